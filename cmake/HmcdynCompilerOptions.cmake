@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Flags for our own translation units. Nothing here reaches a user of the library.
+
+add_library(hmcdyn_warnings INTERFACE)
+target_compile_options(
+  hmcdyn_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                            $<$<BOOL:${HMCDYN_WARNINGS_AS_ERRORS}>:-Werror>)
+
+if(HMCDYN_SANITIZE)
+  if(HMCDYN_SANITIZE MATCHES "thread" AND HMCDYN_SANITIZE MATCHES "address")
+    message(FATAL_ERROR "HMCDYN_SANITIZE=${HMCDYN_SANITIZE}: thread and address exclude each other")
+  endif()
+  add_compile_options(-fsanitize=${HMCDYN_SANITIZE} -fno-omit-frame-pointer
+                      -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${HMCDYN_SANITIZE})
+endif()
