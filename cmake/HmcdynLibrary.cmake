@@ -4,8 +4,20 @@
 set(HMCDYN_INCLUDE_DIR "${PROJECT_SOURCE_DIR}/include")
 
 # In the order in which a frame's data flows.
-set(HMCDYN_CORE_HEADERS span.hpp types.hpp)
-set(HMCDYN_VISION_HEADERS)
+set(HMCDYN_CORE_HEADERS
+    span.hpp
+    types.hpp
+    epipolar.hpp
+    ego_motion.hpp
+    box_dynamism.hpp
+    clustering.hpp
+    cluster_filter.hpp
+    weights.hpp
+    peer_rules.hpp
+    filter_stage.hpp
+    detail/kd_tree.hpp
+    detail/minkowski.hpp)
+set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp dynamic_feature_filter.hpp)
 set(HMCDYN_OPTIMIZATION_HEADERS)
 
 add_library(hmcdyn_core INTERFACE)
@@ -13,3 +25,11 @@ target_include_directories(hmcdyn_core INTERFACE "$<BUILD_INTERFACE:${HMCDYN_INC
 target_link_libraries(hmcdyn_core INTERFACE Eigen3::Eigen nanoflann::nanoflann)
 target_compile_features(hmcdyn_core INTERFACE cxx_std_17)
 add_library(hmcdyn::core ALIAS hmcdyn_core)
+
+add_library(hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/fundamental.cpp
+                          src/dynamic_feature_filter.cpp)
+target_link_libraries(
+  hmcdyn_vision
+  PUBLIC hmcdyn_core opencv_core
+  PRIVATE opencv_imgproc opencv_video opencv_calib3d hmcdyn_warnings)
+add_library(hmcdyn::vision ALIAS hmcdyn_vision)

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Step 4: which detection boxes hold something that moves.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hmcdyn/types.hpp>
+
+namespace hmcdyn {
+
+struct BoxDynamismOptions {
+  float distance_threshold = 1.0f;         ///< A point is dynamic beyond this distance (px).
+  float person_distance_threshold = 0.9f;  ///< The same for a point in a person's box (px).
+  float dynamic_ratio = 0.1f;              ///< A box is dynamic beyond this share of its points.
+  int person_class_id = kPersonClassId;    ///< Detector class of a person.
+};
+
+/// @throws std::invalid_argument naming the first option out of range.
+inline void checkOptions(const BoxDynamismOptions& options) {
+  const auto require = [](bool good, const char* name, float value, const char* expected) {
+    if (!good) {
+      throw std::invalid_argument(std::string("BoxDynamismOptions::") + name + " is " +
+                                  std::to_string(value) + "; expected " + expected);
+    }
+  };
+  require(options.distance_threshold >= 0.0f, "distance_threshold", options.distance_threshold,
+          "a value >= 0 (px)");
+  require(options.person_distance_threshold >= 0.0f, "person_distance_threshold",
+          options.person_distance_threshold, "a value >= 0 (px)");
+  require(options.dynamic_ratio >= 0.0f && options.dynamic_ratio <= 1.0f, "dynamic_ratio",
+          options.dynamic_ratio, "a share in [0, 1]");
+}
+
+/// Which key points each box holds: box b holds indices[offsets[b]] .. indices[offsets[b + 1] - 1],
+/// in the order of the key points. A point may lie in several boxes.
+struct BoxMembership {
+  std::vector<std::size_t> offsets;    ///< Boxes + 1 elements.
+  std::vector<std::uint32_t> indices;  ///< Key points, box by box.
+
+  std::size_t boxes() const noexcept { return offsets.empty() ? 0 : offsets.size() - 1; }
+  Span<const std::uint32_t> pointsIn(std::size_t box) const noexcept {
+    return {indices.data() + offsets[box], offsets[box + 1] - offsets[box]};
+  }
+};
+
+/// @param reuse a result whose memory is taken over.
+/// @throws std::invalid_argument when the points' arrays differ in size.
+inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const DetectionBox> boxes,
+                                   BoxMembership reuse = {}) {
+  checkKeyPoints(points);
+  reuse.offsets.clear();
+  reuse.indices.clear();
+  reuse.offsets.push_back(0);
+  for (const DetectionBox& box : boxes) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (box.contains(points.u[i], points.v[i])) {
+        reuse.indices.push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+    reuse.offsets.push_back(reuse.indices.size());
+  }
+  return reuse;
+}
+
+/// What the test counted in one box.
+struct BoxVerdict {
+  std::size_t points = 0;    ///< Key points in the box.
+  std::size_t measured = 0;  ///< Those with a distance.
+  std::size_t dynamic = 0;   ///< Those beyond their threshold.
+  bool is_dynamic = false;   ///< dynamic > dynamic_ratio * points.
+};
+
+struct BoxDynamism {
+  std::vector<BoxVerdict> boxes;
+  /// N distance thresholds (px). A point in several boxes takes the strictest; outside all boxes
+  /// distance_threshold.
+  std::vector<float> threshold;
+};
+
+/// The paper's test (section III-A): a point is dynamic when its distance exceeds 1 px, 0.9 px in a
+/// person's box; a box is dynamic when more than 10 % of the points in it are. Points without a
+/// distance count as points of the box, not as dynamic ones. An empty box is not dynamic.
+///
+/// @param distance N distances (px), NaN = none.
+/// @throws std::invalid_argument when sizes differ or an option is out of range.
+inline BoxDynamism testBoxes(Span<const float> distance, Span<const DetectionBox> boxes,
+                             const BoxMembership& membership,
+                             const BoxDynamismOptions& options = {}, BoxDynamism reuse = {}) {
+  checkOptions(options);
+  if (membership.boxes() != boxes.size()) {
+    throw std::invalid_argument("testBoxes: membership of " + std::to_string(membership.boxes()) +
+                                " boxes for " + std::to_string(boxes.size()) + " boxes");
+  }
+  constexpr float kInNoBox = std::numeric_limits<float>::infinity();
+  reuse.threshold.assign(distance.size(), kInNoBox);
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    const float threshold = boxes[b].class_id == options.person_class_id
+                                ? options.person_distance_threshold
+                                : options.distance_threshold;
+    for (const std::uint32_t i : membership.pointsIn(b)) {
+      reuse.threshold[i] = std::min(reuse.threshold[i], threshold);
+    }
+  }
+  for (float& threshold : reuse.threshold) {
+    if (threshold == kInNoBox) {
+      threshold = options.distance_threshold;
+    }
+  }
+  reuse.boxes.clear();
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    BoxVerdict verdict;
+    for (const std::uint32_t i : membership.pointsIn(b)) {
+      ++verdict.points;
+      verdict.measured += std::isnan(distance[i]) ? 0 : 1;
+      verdict.dynamic += distance[i] > reuse.threshold[i] ? 1 : 0;
+    }
+    verdict.is_dynamic = static_cast<float>(verdict.dynamic) >
+                         options.dynamic_ratio * static_cast<float>(verdict.points);
+    reuse.boxes.push_back(verdict);
+  }
+  return reuse;
+}
+
+}  // namespace hmcdyn

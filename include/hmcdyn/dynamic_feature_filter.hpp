@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All the steps for one frame against one or several earlier ones, in order. [OpenCV]
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <hmcdyn/ego_motion.hpp>
+#include <hmcdyn/filter_stage.hpp>
+#include <hmcdyn/fundamental.hpp>
+#include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/types.hpp>
+
+namespace hmcdyn {
+
+/// Which distance the filter judges by.
+enum class DistanceKind : std::uint8_t {
+  kTwoView,    ///< Epipolar distance, eq. 4, or the transfer distance where F is not defined.
+  kEgoMotion,  ///< Compensated for a known camera motion, in three dimensions.
+  kLarger,     ///< The larger of both.
+};
+
+struct DynamicFeatureFilterOptions {
+  OpticalFlowOptions flow;
+  MotionModelOptions motion;
+  DistanceKind distance = DistanceKind::kTwoView;
+  EgoMotionOptions ego_motion;
+  FilterStageOptions stage;
+  /// A model explains its frame pair well enough to speak of motion when the median distance of its
+  /// matches stays below this (px); distances to other frames are not used.
+  float max_median_distance = 0.5f;
+};
+
+/// An earlier frame to compare with. The neighbour shows fast motion; one some tenths of a second
+/// back shows slow motion, too.
+struct EarlierFrame {
+  const FlowPyramid* pyramid = nullptr;  ///< Of its gray image; not null.
+  cv::Mat depth;  ///< Depths (m, CV_32FC1, 0 or NaN = none); needed for the ego-motion distance.
+  /// Motion of the camera since then, as far as it is known; needed for the ego-motion distance.
+  std::optional<Eigen::Isometry3d> current_from_earlier;
+};
+
+/// One frame's input.
+struct DynamicFeatureFilterInput {
+  const FlowPyramid* pyramid = nullptr;  ///< Of the current gray image; not null.
+  KeyPointsView points;                  ///< N key points of the current frame.
+  Span<const DetectionBox> boxes;        ///< Of the current frame.
+  Span<const EarlierFrame> earlier;      ///< Frames to compare with; may be empty.
+  PinholeCamera camera;                  ///< Needed for the ego-motion distance.
+};
+
+/// What one earlier frame contributed.
+struct EarlierFrameReport {
+  std::size_t matches = 0;     ///< Key points found there.
+  MotionModelEstimate motion;  ///< The model, and whether F was defined.
+  bool used = false;           ///< Its distances count.
+};
+
+struct DynamicFeatureFilterResult {
+  std::vector<float> distance;              ///< N distances (px), NaN = none.
+  FilterStageResult stage;                  ///< Labels, weights, clusters; boxes and frame.
+  std::vector<EarlierFrameReport> earlier;  ///< One an earlier frame.
+};
+
+/// Memory that filterDynamicFeatures reuses from frame to frame.
+struct DynamicFeatureFilterWorkspace {
+  FilterStageWorkspace stage;
+  std::vector<float> distance;
+};
+
+/// Tracks the key points into every earlier frame, estimates the camera's motion, measures each
+/// point's distance (the largest over the earlier frames whose model holds), and labels and weighs
+/// the points. Pure: the same input and seeds give the same result.
+///
+/// Without an earlier frame, or where no model holds, no point has a distance: all are static, and
+/// the reports say why.
+/// @throws std::invalid_argument for a null pyramid, unequal arrays, images of unequal size, a
+/// missing motion, depth or camera where the ego-motion distance is asked for, or a bad option.
+DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput& input,
+                                                 const DynamicFeatureFilterOptions& options,
+                                                 DynamicFeatureFilterWorkspace& workspace);
+
+/// The smallest call: two gray images (8-bit, one size), key points and boxes.
+/// @throws std::invalid_argument as above, and for images that are not 8-bit gray.
+DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,
+                                                 const cv::Mat& current_gray,
+                                                 const KeyPointsView& points,
+                                                 Span<const DetectionBox> boxes,
+                                                 const DynamicFeatureFilterOptions& options = {});
+
+}  // namespace hmcdyn

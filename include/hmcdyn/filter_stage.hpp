@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps 4 to 7 in one call: arrays in, labels and weights out.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hmcdyn/box_dynamism.hpp>
+#include <hmcdyn/cluster_filter.hpp>
+#include <hmcdyn/clustering.hpp>
+#include <hmcdyn/peer_rules.hpp>
+#include <hmcdyn/types.hpp>
+#include <hmcdyn/weights.hpp>
+
+namespace hmcdyn {
+
+/// Who decides which points are dynamic.
+enum class FilterRule : std::uint8_t {
+  kNone,          ///< Nobody: every point is static.
+  kBox,           ///< Every point in every box is dropped; the paper's RS ablation.
+  kEpipolar,      ///< One threshold in dynamic boxes; the paper's DF ablation.
+  kTwoThreshold,  ///< SG-SLAM.
+  kChiSquare,     ///< OVD-SLAM.
+  kDepthRansac,   ///< YOLO-SLAM.
+  kHmc,           ///< HMC-SLAM, the paper.
+};
+
+inline constexpr FilterRule kFilterRules[] = {FilterRule::kNone,      FilterRule::kBox,
+                                              FilterRule::kEpipolar,  FilterRule::kTwoThreshold,
+                                              FilterRule::kChiSquare, FilterRule::kDepthRansac,
+                                              FilterRule::kHmc};
+
+/// "none", "box", "epipolar", "two_threshold", "chi2", "depth_ransac" or "hmc".
+inline const char* toString(FilterRule rule) noexcept {
+  switch (rule) {
+    case FilterRule::kNone:
+      return "none";
+    case FilterRule::kBox:
+      return "box";
+    case FilterRule::kEpipolar:
+      return "epipolar";
+    case FilterRule::kTwoThreshold:
+      return "two_threshold";
+    case FilterRule::kChiSquare:
+      return "chi2";
+    case FilterRule::kDepthRansac:
+      return "depth_ransac";
+    case FilterRule::kHmc:
+      return "hmc";
+  }
+  return "invalid";
+}
+
+/// The rule of that name; nothing for an unknown name.
+inline std::optional<FilterRule> filterRuleFromString(std::string_view name) noexcept {
+  for (const FilterRule rule : kFilterRules) {
+    if (name == toString(rule)) {
+      return rule;
+    }
+  }
+  return std::nullopt;
+}
+
+struct FilterStageOptions {
+  FilterRule rule = FilterRule::kHmc;
+  BoxDynamismOptions boxes;
+  ClusteringOptions clustering;
+  ClusterFilterOptions cluster_filter;
+  WeightOptions weights;
+  TwoThresholdOptions two_threshold;
+  ChiSquareOptions chi_square;
+  DepthRansacOptions depth_ransac;
+};
+
+/// What was decided about one box, and why.
+struct BoxDecision {
+  BoxVerdict verdict;                    ///< The box test's counts.
+  std::vector<ClusterSummary> clusters;  ///< Clusters of a dynamic box, with each one's verdict.
+  int first_cluster = 0;                 ///< Frame-wide number of clusters[0].
+  int strongest = kNoise;  ///< Index in `clusters` of the anchor; kNoise = none qualified.
+  DepthAnchor anchor;      ///< What the weights of this box refer to.
+};
+
+/// What was decided about the frame.
+struct FrameDecision {
+  float mean_distance = 0.0f;  ///< Over all key points with a distance (px); 0 without any.
+  std::size_t points = 0;
+  std::size_t measured = 0;  ///< Points with a distance.
+  std::size_t boxes = 0;
+  std::size_t dynamic_boxes = 0;
+  std::size_t points_in_dynamic_boxes = 0;  ///< For the 0.6 rule of the pose refinement.
+  std::size_t dynamic = 0;                  ///< Points labelled dynamic.
+  std::size_t suspect = 0;                  ///< Points labelled suspect.
+  std::size_t unmatched = 0;                ///< Points labelled unmatched.
+};
+
+struct FilterStageResult {
+  std::vector<PointLabel> label;   ///< N verdicts.
+  std::vector<float> weight;       ///< N weights, eq. 7, in [0, 1].
+  std::vector<int> cluster;        ///< N frame-wide cluster numbers; kNoise = in none.
+  std::vector<BoxDecision> boxes;  ///< One a detection box.
+  FrameDecision frame;
+};
+
+/// Memory that filterKeyPoints reuses from frame to frame, with its last result.
+struct FilterStageWorkspace {
+  FilterStageResult result;
+  BoxMembership membership;
+  BoxDynamism dynamism;
+  ClusterFilterResult cluster_filter;
+  std::vector<float> box_depth;
+  std::vector<float> box_distance;
+  std::vector<float> box_threshold;
+  std::vector<std::uint8_t> in_dynamic_box;
+};
+
+namespace detail {
+
+/// Standard deviation of the depths that are there; 0 without any.
+inline float depthDeviation(Span<const float> depth) {
+  double sum = 0.0;
+  double sum_of_squares = 0.0;
+  std::size_t n = 0;
+  for (const float z : depth) {
+    if (hasDepth(z)) {
+      sum += z;
+      ++n;
+    }
+  }
+  if (n == 0) {
+    return 0.0f;
+  }
+  const double mean = sum / static_cast<double>(n);
+  for (const float z : depth) {
+    if (hasDepth(z)) {
+      sum_of_squares += (z - mean) * (z - mean);
+    }
+  }
+  return static_cast<float>(std::sqrt(sum_of_squares / static_cast<double>(n)));
+}
+
+inline float meanDistance(Span<const float> distance, std::size_t& measured) {
+  double sum = 0.0;
+  measured = 0;
+  for (const float d : distance) {
+    if (!std::isnan(d)) {
+      sum += d;
+      ++measured;
+    }
+  }
+  return measured == 0 ? 0.0f : static_cast<float>(sum / static_cast<double>(measured));
+}
+
+/// Steps 5 to 7 on dynamic box `b`. A point in several dynamic boxes keeps the strictest verdict:
+/// dynamic before unmatched before suspect, and the smallest weight.
+inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<const float> distance,
+                             const FilterStageOptions& options, FilterStageWorkspace& workspace) {
+  FilterStageResult& result = workspace.result;
+  const Span<const std::uint32_t> members = workspace.membership.pointsIn(b);
+  workspace.box_depth.clear();
+  workspace.box_distance.clear();
+  workspace.box_threshold.clear();
+  for (const std::uint32_t i : members) {
+    workspace.box_depth.push_back(points.depth[i]);
+    workspace.box_distance.push_back(distance[i]);
+    workspace.box_threshold.push_back(workspace.dynamism.threshold[i]);
+  }
+
+  const Clustering clustering =
+      clusterBox(workspace.box_depth, workspace.box_distance, options.clustering);  // step 5
+  ClusterFilterResult& filtered = workspace.cluster_filter;
+  filtered = filterClusters(workspace.box_depth, workspace.box_distance, workspace.box_threshold,
+                            clustering, result.frame.mean_distance, options.cluster_filter,
+                            std::move(filtered));  // step 6
+
+  BoxDecision& decision = result.boxes[b];
+  decision.clusters = filtered.clusters;
+  decision.strongest = filtered.strongest;
+  decision.anchor.sigma = depthDeviation(workspace.box_depth);
+  if (filtered.strongest != kNoise) {
+    decision.anchor.depth =
+        filtered.clusters[static_cast<std::size_t>(filtered.strongest)].mean_depth;
+  }
+
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const std::uint32_t i = members[k];
+    const bool first_box = workspace.in_dynamic_box[i] == 0;
+    workspace.in_dynamic_box[i] = 1;
+    const PointLabel before = result.label[i];
+    PointLabel label = std::isnan(distance[i]) ? PointLabel::kUnmatched : PointLabel::kSuspect;
+    float weight = keptPointWeight(points.depth[i], decision.anchor, options.weights);  // step 7
+    if (filtered.is_dynamic[k] != 0) {
+      label = PointLabel::kDynamic;
+      weight = 0.0f;
+    }
+    result.weight[i] = std::min(result.weight[i], weight);
+    if (before != PointLabel::kDynamic) {
+      result.label[i] = label;
+    }
+    if (clustering.label[k] != kNoise &&
+        (first_box || (label == PointLabel::kDynamic && before != PointLabel::kDynamic))) {
+      result.cluster[i] = decision.first_cluster + clustering.label[k];
+    }
+  }
+}
+
+/// The peers' rules know two verdicts only.
+inline std::vector<std::uint8_t> peerFlags(const KeyPointsView& points, Span<const float> distance,
+                                           Span<const DetectionBox> boxes,
+                                           const FilterStageOptions& options,
+                                           const FilterStageWorkspace& workspace) {
+  switch (options.rule) {
+    case FilterRule::kBox:
+      return dropWholeBoxes(points.size(), workspace.membership);
+    case FilterRule::kEpipolar:
+      return dropBeyondThreshold(distance, workspace.membership, workspace.dynamism);
+    case FilterRule::kTwoThreshold:
+      return dropByTwoThresholds(distance, boxes, workspace.membership,
+                                 options.boxes.person_class_id, options.two_threshold);
+    case FilterRule::kChiSquare:
+      return dropByChiSquare(distance, workspace.membership, options.chi_square);
+    case FilterRule::kDepthRansac:
+      return dropByDepthRansac(points.depth, workspace.membership, options.depth_ransac);
+    case FilterRule::kNone:
+    case FilterRule::kHmc:
+      break;
+  }
+  return std::vector<std::uint8_t>(points.size(), 0);
+}
+
+inline void countLabels(const FilterStageWorkspace& workspace, FrameDecision& frame) {
+  for (std::size_t i = 0; i < workspace.result.label.size(); ++i) {
+    frame.points_in_dynamic_boxes += workspace.in_dynamic_box[i];
+    frame.dynamic += workspace.result.label[i] == PointLabel::kDynamic ? 1 : 0;
+    frame.suspect += workspace.result.label[i] == PointLabel::kSuspect ? 1 : 0;
+    frame.unmatched += workspace.result.label[i] == PointLabel::kUnmatched ? 1 : 0;
+  }
+}
+
+}  // namespace detail
+
+/// Labels and weighs the key points of a frame whose distances are known: box test, clustering,
+/// cluster filter, weights, or the rule of a peer.
+///
+/// Outside dynamic boxes every point is static with weight 1. A frame without boxes, or without any
+/// distance, is a frame of static points; `frame` in the result says so.
+///
+/// @param distance N distances (px), NaN = none (modelDistances, egoMotionDistances, or your own).
+/// @param workspace keeps the memory and the result; valid until the next call with it.
+/// @throws std::invalid_argument when sizes differ or an option is out of range.
+inline const FilterStageResult& filterKeyPoints(const KeyPointsView& points,
+                                                Span<const float> distance,
+                                                Span<const DetectionBox> boxes,
+                                                const FilterStageOptions& options,
+                                                FilterStageWorkspace& workspace) {
+  checkKeyPoints(points);
+  if (distance.size() != points.size()) {
+    throw std::invalid_argument("filterKeyPoints: " + std::to_string(points.size()) +
+                                " key points, but " + std::to_string(distance.size()) +
+                                " distances; expected equal sizes");
+  }
+  checkOptions(options.clustering);
+  checkOptions(options.cluster_filter);
+  checkOptions(options.weights);
+
+  FilterStageResult& result = workspace.result;
+  result.label.assign(points.size(), PointLabel::kStatic);
+  result.weight.assign(points.size(), 1.0f);
+  result.cluster.assign(points.size(), kNoise);
+  result.boxes.resize(boxes.size());
+  result.frame = FrameDecision{};
+  FrameDecision& frame = result.frame;
+  frame.points = points.size();
+  frame.boxes = boxes.size();
+  frame.mean_distance = detail::meanDistance(distance, frame.measured);
+
+  workspace.in_dynamic_box.assign(points.size(), 0);
+  workspace.membership = assignToBoxes(points, boxes, std::move(workspace.membership));
+  workspace.dynamism = testBoxes(distance, boxes, workspace.membership, options.boxes,
+                                 std::move(workspace.dynamism));  // step 4
+
+  int clusters = 0;
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    BoxDecision& decision = result.boxes[b];
+    decision = BoxDecision{};
+    decision.verdict = workspace.dynamism.boxes[b];
+    decision.first_cluster = clusters;
+    if (!decision.verdict.is_dynamic) {
+      continue;
+    }
+    ++frame.dynamic_boxes;
+    if (options.rule == FilterRule::kHmc) {
+      detail::filterDynamicBox(b, points, distance, options, workspace);
+      clusters += static_cast<int>(decision.clusters.size());
+    } else {
+      for (const std::uint32_t i : workspace.membership.pointsIn(b)) {
+        workspace.in_dynamic_box[i] = 1;
+      }
+    }
+  }
+  if (options.rule != FilterRule::kHmc && options.rule != FilterRule::kNone) {
+    const std::vector<std::uint8_t> dynamic =
+        detail::peerFlags(points, distance, boxes, options, workspace);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (dynamic[i] != 0) {
+        result.label[i] = PointLabel::kDynamic;
+        result.weight[i] = 0.0f;
+      }
+    }
+  }
+  detail::countLabels(workspace, frame);
+  return result;
+}
+
+/// The same without a workspace.
+inline FilterStageResult filterKeyPoints(const KeyPointsView& points, Span<const float> distance,
+                                         Span<const DetectionBox> boxes,
+                                         const FilterStageOptions& options = {}) {
+  FilterStageWorkspace workspace;
+  filterKeyPoints(points, distance, boxes, options, workspace);
+  return std::move(workspace.result);
+}
+
+}  // namespace hmcdyn

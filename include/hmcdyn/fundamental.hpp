@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Step 2: the camera's motion between two frames, and whether it defines epipolar lines. [OpenCV]
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hmcdyn/epipolar.hpp>
+#include <hmcdyn/types.hpp>
+
+namespace hmcdyn {
+
+struct MotionModelOptions {
+  int min_matches = 12;  ///< Fewer matches than this give no model; at least 8.
+
+  /// The model is estimated from the matches outside every box when there are this many of them ...
+  int min_background_matches = 60;
+  /// ... and they lie in this many cells of a 4-by-4 grid over all matches; else from all matches.
+  int min_background_cells = 5;
+
+  float inlier_threshold = 0.5f;  ///< Distance of an inlier (px).
+  double confidence = 0.999;      ///< Of the robust estimators, in (0, 1).
+  int max_iterations = 2000;      ///< Of the robust estimators.
+  std::uint32_t seed = 1;         ///< Of the robust estimators.
+
+  /// The camera stands still when this share of the matches ...
+  float still_share = 0.9f;
+  /// ... moved by less than this (px).
+  float still_displacement = 0.35f;
+
+  /// F is defined when the second smallest singular value of its linear system exceeds the smallest
+  /// by this factor: 1 = a second solution fits as well.
+  float min_conditioning = 2.0f;
+  /// Where F is not defined, a homography replaces it if this share of the matches are its inliers.
+  float min_homography_share = 0.6f;
+};
+
+/// Whether the matches define a fundamental matrix, and why not.
+enum class FundamentalVerdict : std::uint8_t {
+  kDefined,         ///< They do.
+  kTooFewMatches,   ///< Fewer than min_matches.
+  kCameraStill,     ///< Nothing moved.
+  kIllConditioned,  ///< The camera only rotated, or the parallax drowns in noise.
+  kNoConsensus,     ///< The robust estimator found no matrix.
+};
+
+/// "defined", "too few matches", "camera still", "ill-conditioned" or "no consensus".
+const char* toString(FundamentalVerdict verdict) noexcept;
+
+struct MotionModelEstimate {
+  TwoViewModel model;  ///< What to measure distances with; kNone only where nothing fits.
+  FundamentalVerdict verdict = FundamentalVerdict::kTooFewMatches;
+  bool background_only = false;  ///< Estimated from the matches outside the boxes.
+  std::size_t matches = 0;       ///< Matches it was estimated from.
+  std::size_t inliers = 0;       ///< Those within inlier_threshold of the model.
+  float median_distance = kNaN;  ///< Median distance of these matches (px): the noise of the model.
+  float conditioning = 0.0f;     ///< Ratio that min_conditioning refers to; 0 = not computed.
+
+  bool fundamentalDefined() const noexcept { return verdict == FundamentalVerdict::kDefined; }
+};
+
+/// Estimates what the camera's motion does to the background: a fundamental matrix by MAGSAC
+/// (Barath, Noskova, Matas 2019) and a normalised eight-point refit with Sampson weights (Hartley
+/// 1997; Luong, Faugeras 1996). A camera that stands still or only rotates leaves F undefined, and
+/// epipolar distances would be noise; a homography, or plain displacement, then takes its place.
+///
+/// @param pairs of N points; those with a NaN are left out.
+/// @param boxes whose points are left out while enough others remain.
+/// @throws std::invalid_argument when sizes differ or an option is out of range.
+MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                        const MotionModelOptions& options = {});
+
+}  // namespace hmcdyn

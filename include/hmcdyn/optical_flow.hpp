@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Step 1: where the current frame's key points were in an earlier frame. [OpenCV]
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include <hmcdyn/types.hpp>
+
+namespace hmcdyn {
+
+/// Pyramidal Lucas-Kanade (Bouguet 2001) with a forward-backward check (Kalal, Mikolajczyk, Matas
+/// 2010).
+struct OpticalFlowOptions {
+  int window = 21;                          ///< Side of the square window (px), odd, at least 3.
+  int max_level = 2;                        ///< Coarsest pyramid level, 0 = the image itself.
+  int max_iterations = 30;                  ///< A level.
+  float epsilon = 0.01f;                    ///< A level's iterations end below this step (px).
+  float max_forward_backward_error = 0.5f;  ///< Farther from its start, a match is dropped (px).
+};
+
+/// The pyramid that both ends of a match need; keep the current frame's for the next call.
+using FlowPyramid = std::vector<cv::Mat>;
+
+/// @param gray 8-bit, one channel.
+/// @throws std::invalid_argument for an empty image or one of another type, or a bad option.
+FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& options = {});
+
+/// The N key points in the earlier frame; NaN where the match was lost.
+struct FlowMatches {
+  std::vector<float> u;   ///< Columns (px).
+  std::vector<float> v;   ///< Rows (px).
+  std::size_t found = 0;  ///< Points that are not NaN.
+};
+
+/// Tracks the current frame's key points back into the earlier frame, and forth again as a check,
+/// so that every key point of the current frame gets its own match. Key points outside the image or
+/// not finite are lost, not an error.
+/// @throws std::invalid_argument for an empty pyramid, pyramids of different image sizes, unequal
+/// arrays, or a bad option.
+FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid& earlier,
+                                  const KeyPointsView& points,
+                                  const OpticalFlowOptions& options = {});
+
+}  // namespace hmcdyn

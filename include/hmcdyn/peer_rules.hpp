@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What other dynamic SLAM systems do with the same inputs, so that one call compares them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <hmcdyn/box_dynamism.hpp>
+#include <hmcdyn/types.hpp>
+
+namespace hmcdyn {
+
+/// Two thresholds, a tighter one inside people's boxes (SG-SLAM: Cheng, Sun, Zhang, Zhang,
+/// "SG-SLAM: a real-time RGB-D visual SLAM toward dynamic scenes with semantic and geometric
+/// information", IEEE TIM 2023; values as in its published configuration).
+struct TwoThresholdOptions {
+  float outside_threshold =
+      1.0f;                       ///< Distance beyond which a point outside people is dropped (px).
+  float inside_threshold = 0.2f;  ///< The same in a person's box (px).
+  /// If fewer than this share of the key points would remain, all are kept.
+  float revert_share = 0.1f;
+};
+
+/// Chi-square test (OVD-SLAM: He, Li, Wang, Wang, "OVD-SLAM: an online visual SLAM for dynamic
+/// environments", IEEE Sensors Journal 2023), here on the squared epipolar distance in the boxes.
+struct ChiSquareOptions {
+  float sigma = 1.0f;        ///< Standard deviation of a distance (px).
+  float quantile = 3.8415f;  ///< 95 % of chi-square with one degree of freedom.
+};
+
+/// Depth-RANSAC (YOLO-SLAM: Wu, Guo, Gao, You, Liu, Chen, "YOLO-SLAM: a semantic SLAM system
+/// towards dynamic environment with geometric constraint", Neural Computing and Applications 2022).
+struct DepthRansacOptions {
+  float variance_threshold = 0.43f;  ///< Of a candidate with the two drawn depths (m^2).
+  float confidence = 0.99f;          ///< Of having drawn two points of the dynamic thing.
+  int max_iterations = 200;          ///< Draws a box.
+  std::uint32_t seed = 1;            ///< Of the draws.
+};
+
+/// Flags (1 = dynamic): every point of every box (the paper's RS ablation).
+inline std::vector<std::uint8_t> dropWholeBoxes(std::size_t points,
+                                                const BoxMembership& membership) {
+  std::vector<std::uint8_t> dynamic(points, 0);
+  for (const std::uint32_t i : membership.indices) {
+    dynamic[i] = 1;
+  }
+  return dynamic;
+}
+
+/// Flags: points of dynamic boxes beyond their own threshold (the paper's DF ablation).
+inline std::vector<std::uint8_t> dropBeyondThreshold(Span<const float> distance,
+                                                     const BoxMembership& membership,
+                                                     const BoxDynamism& dynamism) {
+  std::vector<std::uint8_t> dynamic(distance.size(), 0);
+  for (std::size_t b = 0; b < membership.boxes(); ++b) {
+    if (!dynamism.boxes[b].is_dynamic) {
+      continue;
+    }
+    for (const std::uint32_t i : membership.pointsIn(b)) {
+      if (distance[i] > dynamism.threshold[i]) {
+        dynamic[i] = 1;
+      }
+    }
+  }
+  return dynamic;
+}
+
+/// Flags: TwoThresholdOptions' rule.
+inline std::vector<std::uint8_t> dropByTwoThresholds(Span<const float> distance,
+                                                     Span<const DetectionBox> boxes,
+                                                     const BoxMembership& membership,
+                                                     int person_class_id,
+                                                     const TwoThresholdOptions& options = {}) {
+  std::vector<std::uint8_t> in_person(distance.size(), 0);
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    if (boxes[b].class_id == person_class_id) {
+      for (const std::uint32_t i : membership.pointsIn(b)) {
+        in_person[i] = 1;
+      }
+    }
+  }
+  std::vector<std::uint8_t> dynamic(distance.size(), 0);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    const float threshold =
+        in_person[i] != 0 ? options.inside_threshold : options.outside_threshold;
+    dynamic[i] = distance[i] > threshold ? 1 : 0;
+    kept += dynamic[i] == 0 ? 1 : 0;
+  }
+  if (static_cast<float>(kept) < options.revert_share * static_cast<float>(distance.size())) {
+    std::fill(dynamic.begin(), dynamic.end(), std::uint8_t{0});
+  }
+  return dynamic;
+}
+
+/// Flags: points in boxes that fail ChiSquareOptions' test, d^2 / sigma^2 > quantile.
+/// @throws std::invalid_argument unless sigma > 0.
+inline std::vector<std::uint8_t> dropByChiSquare(Span<const float> distance,
+                                                 const BoxMembership& membership,
+                                                 const ChiSquareOptions& options = {}) {
+  if (!(options.sigma > 0.0f)) {
+    throw std::invalid_argument("ChiSquareOptions::sigma is " + std::to_string(options.sigma) +
+                                "; expected a value > 0 (px)");
+  }
+  std::vector<std::uint8_t> dynamic(distance.size(), 0);
+  for (const std::uint32_t i : membership.indices) {
+    const float normalized = distance[i] / options.sigma;
+    dynamic[i] = normalized * normalized > options.quantile ? 1 : 0;
+  }
+  return dynamic;
+}
+
+namespace detail {
+
+/// The largest set of depths that keep the variance of (two drawn depths, itself) below the
+/// threshold; positions in `depth`.
+inline std::vector<std::size_t> depthConsensus(const std::vector<float>& depth,
+                                               const DepthRansacOptions& options,
+                                               std::mt19937& random) {
+  std::vector<std::size_t> best;
+  const std::size_t n = depth.size();
+  double wanted = options.max_iterations;
+  for (int iteration = 0; iteration < options.max_iterations && iteration < wanted; ++iteration) {
+    // Not std::uniform_int_distribution, whose draws differ between standard libraries.
+    const float a = depth[random() % n];
+    const float b = depth[random() % n];
+    std::vector<std::size_t> inliers;
+    for (std::size_t i = 0; i < n; ++i) {
+      const float mean = (a + b + depth[i]) / 3.0f;
+      const float variance = ((a - mean) * (a - mean) + (b - mean) * (b - mean) +
+                              (depth[i] - mean) * (depth[i] - mean)) /
+                             3.0f;  // YOLO-SLAM eq. 5
+      if (variance < options.variance_threshold) {
+        inliers.push_back(i);
+      }
+    }
+    if (inliers.size() > best.size()) {
+      best = std::move(inliers);
+      const double share = static_cast<double>(best.size()) / static_cast<double>(n);
+      const double miss = 1.0 - share * share;
+      wanted = miss <= 0.0 ? 0.0
+                           : std::log(1.0 - static_cast<double>(options.confidence)) /
+                                 std::log(miss);  // YOLO-SLAM eq. 8
+    }
+  }
+  return best;
+}
+
+}  // namespace detail
+
+/// Flags: in every box, the largest set of points of like depth (DepthRansacOptions). Points
+/// without depth are kept.
+/// @throws std::invalid_argument unless 0 < confidence < 1 and max_iterations >= 1.
+inline std::vector<std::uint8_t> dropByDepthRansac(Span<const float> depth,
+                                                   const BoxMembership& membership,
+                                                   const DepthRansacOptions& options = {}) {
+  if (!(options.confidence > 0.0f && options.confidence < 1.0f) || options.max_iterations < 1) {
+    throw std::invalid_argument("DepthRansacOptions: confidence is " +
+                                std::to_string(options.confidence) + ", max_iterations " +
+                                std::to_string(options.max_iterations) +
+                                "; expected a share in (0, 1) and a count >= 1");
+  }
+  std::mt19937 random(options.seed);
+  std::vector<std::uint8_t> dynamic(depth.size(), 0);
+  for (std::size_t b = 0; b < membership.boxes(); ++b) {
+    std::vector<float> depths;
+    std::vector<std::uint32_t> indices;
+    for (const std::uint32_t i : membership.pointsIn(b)) {
+      if (hasDepth(depth[i])) {
+        depths.push_back(depth[i]);
+        indices.push_back(i);
+      }
+    }
+    if (depths.size() < 3) {
+      continue;
+    }
+    for (const std::size_t inlier : detail::depthConsensus(depths, options, random)) {
+      dynamic[indices[inlier]] = 1;
+    }
+  }
+  return dynamic;
+}
+
+}  // namespace hmcdyn

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Step 7: how much a kept point of a dynamic box counts.
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <hmcdyn/types.hpp>
+
+namespace hmcdyn {
+
+struct WeightOptions {
+  /// Weight of a kept point without depth, where eq. 8 has nothing to compare; 0..1.
+  float without_depth = 0.5f;
+  /// Weight of a kept point in a dynamic box in which no cluster qualified as the strongest; 0..1.
+  float without_anchor = 0.5f;
+};
+
+/// @throws std::invalid_argument naming the first option out of range.
+inline void checkOptions(const WeightOptions& options) {
+  const auto require = [](float value, const char* name) {
+    if (!(value >= 0.0f && value <= 1.0f)) {
+      throw std::invalid_argument(std::string("WeightOptions::") + name + " is " +
+                                  std::to_string(value) + "; expected a weight in [0, 1]");
+    }
+  };
+  require(options.without_depth, "without_depth");
+  require(options.without_anchor, "without_anchor");
+}
+
+/// Depths of one dynamic box, as eq. 8 needs them.
+struct DepthAnchor {
+  float depth = kNaN;  ///< d_maxaver: mean depth of the strongest dynamic cluster (m); NaN = none.
+  float sigma = 0.0f;  ///< Standard deviation of all depths in the box (m).
+};
+
+/// G of eq. 8: exp(-(z - z_max)^2 / (2 sigma^2)); its limit for sigma = 0 (1 at the anchor's depth,
+/// 0 elsewhere).
+inline float depthSimilarity(float depth, const DepthAnchor& anchor) noexcept {
+  const float difference = depth - anchor.depth;
+  if (anchor.sigma <= 0.0f) {
+    return difference == 0.0f ? 1.0f : 0.0f;
+  }
+  const float ratio = difference / anchor.sigma;
+  return std::exp(-0.5f * ratio * ratio);  // eq. 8
+}
+
+/// lambda of eq. 7 for a point that was kept in a dynamic box, in [0, 1], never NaN.
+/// @param depth of the point (m); 0, negative or NaN = none.
+inline float keptPointWeight(float depth, const DepthAnchor& anchor,
+                             const WeightOptions& options = {}) noexcept {
+  if (std::isnan(anchor.depth)) {
+    return options.without_anchor;
+  }
+  if (!hasDepth(depth)) {
+    return options.without_depth;
+  }
+  return 1.0f - depthSimilarity(depth, anchor);  // eq. 7
+}
+
+}  // namespace hmcdyn

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/core/version.hpp>
+
+#include <hmcdyn/fundamental.hpp>
+
+#include "eight_point.hpp"
+
+namespace hmcdyn {
+namespace {
+
+using internal::Match;
+
+void checkOptions(const MotionModelOptions& options) {
+  const auto require = [](bool good, const char* name, double value, const char* expected) {
+    if (!good) {
+      throw std::invalid_argument(std::string("MotionModelOptions::") + name + " is " +
+                                  std::to_string(value) + "; expected " + expected);
+    }
+  };
+  require(options.min_matches >= 8, "min_matches", options.min_matches, "a count >= 8");
+  require(options.inlier_threshold > 0.0f, "inlier_threshold", options.inlier_threshold,
+          "a value > 0 (px)");
+  require(options.confidence > 0.0 && options.confidence < 1.0, "confidence", options.confidence,
+          "a probability in (0, 1)");
+  require(options.max_iterations >= 1, "max_iterations", options.max_iterations, "a count >= 1");
+  require(options.still_share > 0.0f && options.still_share <= 1.0f, "still_share",
+          options.still_share, "a share in (0, 1]");
+  require(options.still_displacement >= 0.0f, "still_displacement", options.still_displacement,
+          "a value >= 0 (px)");
+  require(options.min_conditioning >= 1.0f, "min_conditioning", options.min_conditioning,
+          "a ratio >= 1");
+  require(options.min_homography_share >= 0.0f && options.min_homography_share <= 1.0f,
+          "min_homography_share", options.min_homography_share, "a share in [0, 1]");
+}
+
+/// Cells of a 4-by-4 grid over all matches that hold one of `some`.
+int occupiedCells(const std::vector<Match>& some, const std::vector<Match>& all) {
+  Eigen::Array2d low = all.front().current.array();
+  Eigen::Array2d high = low;
+  for (const Match& match : all) {
+    low = low.min(match.current.array());
+    high = high.max(match.current.array());
+  }
+  const Eigen::Array2d cell = ((high - low) / 4.0).max(1e-9);
+  std::array<bool, 16> occupied{};
+  for (const Match& match : some) {
+    const Eigen::Array2i index = ((match.current.array() - low) / cell).cast<int>().max(0).min(3);
+    occupied[static_cast<std::size_t>(index.y() * 4 + index.x())] = true;
+  }
+  return static_cast<int>(std::count(occupied.begin(), occupied.end(), true));
+}
+
+/// The matches that the model is estimated from, and whether they are the background's only.
+std::pair<std::vector<Match>, bool> selectMatches(const PointPairsView& pairs,
+                                                  Span<const DetectionBox> boxes,
+                                                  const MotionModelOptions& options) {
+  std::vector<Match> all;
+  std::vector<Match> background;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Match match{{pairs.earlier_u[i], pairs.earlier_v[i]},
+                      {pairs.current_u[i], pairs.current_v[i]}};
+    if (!match.earlier.allFinite() || !match.current.allFinite()) {
+      continue;
+    }
+    all.push_back(match);
+    const bool in_box = std::any_of(boxes.begin(), boxes.end(), [&](const DetectionBox& box) {
+      return box.contains(pairs.current_u[i], pairs.current_v[i]);
+    });
+    if (!in_box) {
+      background.push_back(match);
+    }
+  }
+  const bool enough =
+      background.size() >=
+          static_cast<std::size_t>(std::max(options.min_background_matches, options.min_matches)) &&
+      occupiedCells(background, all) >= options.min_background_cells;
+  return enough ? std::make_pair(std::move(background), true)
+                : std::make_pair(std::move(all), false);
+}
+
+enum class Estimator { kFundamental, kHomography };
+
+/// Robust estimate by OpenCV; the zero matrix where it finds none. Seeded, so that runs repeat.
+Eigen::Matrix3d estimateRobustly(const std::vector<Match>& matches, Estimator estimator,
+                                 const MotionModelOptions& options) {
+  std::vector<cv::Point2f> earlier;
+  std::vector<cv::Point2f> current;
+  for (const Match& match : matches) {
+    earlier.emplace_back(static_cast<float>(match.earlier.x()),
+                         static_cast<float>(match.earlier.y()));
+    current.emplace_back(static_cast<float>(match.current.x()),
+                         static_cast<float>(match.current.y()));
+  }
+  cv::Mat found;
+#if CV_VERSION_MAJOR > 4 || (CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR >= 5)
+  cv::UsacParams parameters;
+  parameters.confidence = options.confidence;
+  parameters.maxIterations = options.max_iterations;
+  parameters.threshold = options.inlier_threshold;
+  parameters.randomGeneratorState = static_cast<int>(options.seed);
+  parameters.isParallel = false;
+  parameters.sampler = cv::SAMPLING_UNIFORM;
+  parameters.score = cv::SCORE_METHOD_MAGSAC;
+  parameters.loMethod = cv::LOCAL_OPTIM_SIGMA;
+  parameters.loIterations = 10;
+  parameters.loSampleSize = 50;
+  cv::Mat mask;
+  found = estimator == Estimator::kFundamental
+              ? cv::findFundamentalMat(earlier, current, mask, parameters)
+              : cv::findHomography(earlier, current, mask, parameters);
+#else
+  // Before USAC: RANSAC, whose generator OpenCV seeds with a constant.
+  found = estimator == Estimator::kFundamental
+              ? cv::findFundamentalMat(earlier, current, cv::FM_RANSAC, options.inlier_threshold,
+                                       options.confidence)
+              : cv::findHomography(earlier, current, cv::RANSAC, options.inlier_threshold,
+                                   cv::noArray(), options.max_iterations, options.confidence);
+#endif
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  if (found.rows >= 3 && found.cols == 3 && found.type() == CV_64F) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        matrix(row, column) = found.at<double>(row, column);
+      }
+    }
+  }
+  return matrix.allFinite() ? matrix : Eigen::Matrix3d::Zero();
+}
+
+double distanceUnder(const TwoViewModel& model, const Match& match) {
+  if (model.kind == TwoViewModelKind::kFundamental) {
+    return epipolarDistance(model.matrix, match.earlier, match.current);
+  }
+  return ((model.matrix * match.earlier.homogeneous()).hnormalized() - match.current).norm();
+}
+
+/// Fills in how well the model explains the matches.
+void assess(const std::vector<Match>& matches, const MotionModelOptions& options,
+            MotionModelEstimate& estimate) {
+  std::vector<double> distances;
+  for (const Match& match : matches) {
+    const double distance = distanceUnder(estimate.model, match);
+    if (std::isfinite(distance)) {
+      distances.push_back(distance);
+      estimate.inliers += distance <= options.inlier_threshold ? 1 : 0;
+    }
+  }
+  if (!distances.empty()) {
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    estimate.median_distance = static_cast<float>(*middle);
+  }
+}
+
+bool cameraStoodStill(const std::vector<Match>& matches, const MotionModelOptions& options) {
+  const auto still = std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
+    return (match.current - match.earlier).norm() < options.still_displacement;
+  });
+  return static_cast<double>(still) >=
+         static_cast<double>(options.still_share) * static_cast<double>(matches.size());
+}
+
+double inlierShare(const TwoViewModel& model, const std::vector<Match>& matches, double threshold) {
+  const auto inliers = std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
+    return distanceUnder(model, match) <= threshold;
+  });
+  return static_cast<double>(inliers) / static_cast<double>(matches.size());
+}
+
+}  // namespace
+
+const char* toString(FundamentalVerdict verdict) noexcept {
+  switch (verdict) {
+    case FundamentalVerdict::kDefined:
+      return "defined";
+    case FundamentalVerdict::kTooFewMatches:
+      return "too few matches";
+    case FundamentalVerdict::kCameraStill:
+      return "camera still";
+    case FundamentalVerdict::kIllConditioned:
+      return "ill-conditioned";
+    case FundamentalVerdict::kNoConsensus:
+      return "no consensus";
+  }
+  return "invalid";
+}
+
+MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                        const MotionModelOptions& options) {
+  checkOptions(options);
+  checkPointPairs(pairs);
+  MotionModelEstimate estimate;
+  const auto [matches, background_only] = selectMatches(pairs, boxes, options);
+  estimate.matches = matches.size();
+  estimate.background_only = background_only;
+  if (matches.size() < static_cast<std::size_t>(options.min_matches)) {
+    return estimate;
+  }
+  if (cameraStoodStill(matches, options)) {
+    estimate.verdict = FundamentalVerdict::kCameraStill;
+    estimate.model.kind = TwoViewModelKind::kIdentity;
+    assess(matches, options, estimate);
+    return estimate;
+  }
+
+  estimate.verdict = FundamentalVerdict::kNoConsensus;
+  const Eigen::Matrix3d robust = estimateRobustly(matches, Estimator::kFundamental, options);
+  if (!robust.isZero()) {
+    constexpr int kRefitRounds = 3;
+    const auto refit =
+        internal::refitFundamental(matches, robust, options.inlier_threshold, kRefitRounds);
+    if (refit) {
+      estimate.model = {TwoViewModelKind::kFundamental, refit->fundamental};
+      estimate.conditioning = static_cast<float>(refit->conditioning);
+      estimate.verdict = refit->conditioning >= static_cast<double>(options.min_conditioning)
+                             ? FundamentalVerdict::kDefined
+                             : FundamentalVerdict::kIllConditioned;
+    }
+  }
+  if (estimate.verdict != FundamentalVerdict::kDefined) {
+    const TwoViewModel homography{TwoViewModelKind::kHomography,
+                                  estimateRobustly(matches, Estimator::kHomography, options)};
+    const bool explains = !homography.matrix.isZero() &&
+                          inlierShare(homography, matches, 2.0 * options.inlier_threshold) >=
+                              static_cast<double>(options.min_homography_share);
+    if (explains) {
+      estimate.model = homography;
+    }
+  }
+  if (estimate.model.kind != TwoViewModelKind::kNone) {
+    assess(matches, options, estimate);
+  }
+  return estimate;
+}
+
+}  // namespace hmcdyn
