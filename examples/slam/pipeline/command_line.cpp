@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/pipeline/command_line.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "slam/camera/calibration.hpp"
+#include "slam/detection/coco_classes.hpp"
+#include "slam/detection/detector_factory.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+std::string join(const std::vector<std::string>& names) {
+  std::string joined;
+  for (const std::string& name : names) {
+    joined += (joined.empty() ? "" : ", ") + name;
+  }
+  return joined;
+}
+
+std::map<std::string, FilterRule> filterNames() {
+  std::map<std::string, FilterRule> names;
+  for (const FilterRule rule : kFilterRules) {
+    names.emplace(toString(rule), rule);
+  }
+  return names;
+}
+
+/// "person,chair", "0,56" or "all".
+std::vector<int> parseClasses(const std::string& list) {
+  std::vector<int> classes;
+  if (list == "all") {
+    return classes;
+  }
+  for (const std::string& name : CLI::detail::split(list, ',')) {
+    const std::optional<int> id = findCocoClass(name);
+    if (!id) {
+      throw CLI::ValidationError("--classes", "'" + name +
+                                                  "' is no COCO class; expected names such as "
+                                                  "person, numbers 0 to 79, or all");
+    }
+    classes.push_back(*id);
+  }
+  return classes;
+}
+
+void declareInput(CLI::App& app, SlamOptions& options) {
+  app.add_option("--dataset", options.dataset,
+                 "Folder in TUM RGB-D format (BONN's is the same): rgb.txt, depth.txt, perhaps "
+                 "associations.txt and groundtruth.txt")
+      ->required()
+      ->group("Input");
+  app.add_option("--camera", options.camera,
+                 "Camera: " + join(cameraPresetNames()) +
+                     ", or a calibration YAML (ours or an ORB-SLAM3 settings file)")
+      ->capture_default_str()
+      ->group("Input");
+  app.add_option("--associations", options.association.associations,
+                 "Associations file (default: associations.txt of the data set, else rgb.txt and "
+                 "depth.txt are paired by time stamp)")
+      ->group("Input");
+  app.add_option("--time-tolerance", options.association.time_tolerance,
+                 "Largest time between a colour image and its depth (s)")
+      ->capture_default_str()
+      ->group("Input");
+  app.add_option("--groundtruth", options.groundtruth,
+                 "Ground-truth trajectory (default: groundtruth.txt of the data set, if it is "
+                 "there); gives ATE and RPE in summary.json")
+      ->group("Input");
+  app.add_option("--max-frames", options.max_frames, "Stop after so many frames (0 = all)")
+      ->capture_default_str()
+      ->group("Input");
+}
+
+void declareDetection(CLI::App& app, SlamOptions& options) {
+  DetectorOptions& detector = options.detector;
+  app.add_option("--detector", detector.type, "Where boxes come from")
+      ->check(CLI::IsMember(detectorTypes()))
+      ->capture_default_str()
+      ->group("Detection");
+  app.add_option("--model", detector.model, "Model: .cfg for darknet, .onnx for yolo (v5 or v8)")
+      ->group("Detection");
+  app.add_option("--weights", detector.weights, "Weights of a darknet model")->group("Detection");
+  app.add_option("--boxes", detector.boxes,
+                 "Boxes for --detector file; a line: timestamp class x_min y_min x_max y_max score")
+      ->group("Detection");
+  app.add_option("--score-threshold", detector.score_threshold, "Lowest score of a box, 0..1")
+      ->capture_default_str()
+      ->group("Detection");
+  app.add_option("--nms-threshold", detector.nms_threshold,
+                 "Overlap (intersection over union) above which the weaker box goes, 0..1")
+      ->capture_default_str()
+      ->group("Detection");
+  app.add_option_function<std::string>(
+         "--classes",
+         [&detector](const std::string& list) { detector.classes = parseClasses(list); },
+         "COCO classes to report, by name or number, or 'all' (default: person)")
+      ->group("Detection");
+}
+
+void declareFilter(CLI::App& app, SlamOptions& options) {
+  MotionFilterOptions& motion = options.filter;
+  FilterStageOptions& stage = motion.filter.stage;
+  app.add_option("--filter", stage.rule,
+                 "hmc (the paper), box (drop whole boxes; RS ablation), epipolar (one threshold; "
+                 "DF ablation), two_threshold (SG-SLAM), chi2 (OVD-SLAM), depth_ransac "
+                 "(YOLO-SLAM), none")
+      ->transform(CLI::CheckedTransformer(filterNames()).description(""))
+      ->default_str(toString(stage.rule))
+      ->group("Filter");
+  app.add_flag("!--no-soft-weights", motion.soft_weights,
+               "Weights 0 and 1 only (the paper's OPW ablation)")
+      ->group("Filter");
+  app.add_option("--baselines", motion.baselines,
+                 "Ages (s) of the earlier frames that the filter compares with; 0 = the neighbour")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->group("Filter");
+  app.add_option("--cluster-epsilon", stage.clustering.epsilon,
+                 "d_eps: neighbourhood radius over (s_z depth, s_d distance)")
+      ->capture_default_str()
+      ->group("Filter");
+  app.add_option("--cluster-min-points", stage.clustering.min_points,
+                 "MinPoints of a core point, itself counted")
+      ->capture_default_str()
+      ->group("Filter");
+  app.add_option("--depth-scale", stage.clustering.depth_scale, "s_z (1/m)")
+      ->capture_default_str()
+      ->group("Filter");
+  app.add_option("--distance-scale", stage.clustering.distance_scale, "s_d (1/px)")
+      ->capture_default_str()
+      ->group("Filter");
+}
+
+void declareTracking(CLI::App& app, SlamOptions& options) {
+  app.add_option("--features", options.features.features, "ORB key points a frame")
+      ->capture_default_str()
+      ->group("Tracking");
+  app.add_option("--max-depth", options.tracker.map.max_depth,
+                 "Farther points (m) do not enter the map")
+      ->capture_default_str()
+      ->group("Tracking");
+  app.add_option("--seed", options.seed, "Of every random draw; one seed, one result")
+      ->capture_default_str()
+      ->group("Tracking");
+}
+
+void declareOutput(CLI::App& app, SlamOptions& options) {
+  app.add_option("--output", options.output,
+                 "Folder for trajectory.txt, timings.csv, summary.json; made if missing")
+      ->required()
+      ->group("Output");
+  app.add_flag("--annotate", options.annotate,
+               "A picture a frame in OUTPUT/frames: boxes, labels, clusters")
+      ->group("Output");
+  app.add_flag("--write-keypoints", options.write_keypoints,
+               "keypoints.csv: timestamp,u,v,depth,distance,cluster,label,weight")
+      ->group("Output");
+  app.add_flag("--quiet", options.quiet, "No progress bar")->group("Output");
+}
+
+}  // namespace
+
+void distributeSeed(SlamOptions& options) {
+  options.filter.filter.motion.seed = options.seed;
+  options.filter.filter.stage.depth_ransac.seed = options.seed;
+  options.tracker.seed = options.seed;
+}
+
+void declareOptions(CLI::App& app, SlamOptions& options) {
+  options.detector.classes = {kPersonClassId};
+  app.description(
+      "RGB-D SLAM for dynamic scenes: tracks the camera through a folder of colour and depth "
+      "images while the filter keeps key points on moving things out of the way.");
+  app.footer(
+      "Example:\n"
+      "  hmcdyn_slam --dataset rgbd_dataset_freiburg3_walking_xyz --camera tum3 \\\n"
+      "    --detector darknet --model yolo-fastest-1.1.cfg --weights yolo-fastest-1.1.weights \\\n"
+      "    --filter hmc --output out\n"
+      "Exit codes: 0 done, 1 bad data or nothing tracked, 2 bad usage.");
+  declareInput(app, options);
+  declareDetection(app, options);
+  declareFilter(app, options);
+  declareTracking(app, options);
+  declareOutput(app, options);
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/pipeline/summary.hpp"
+
+#include <exception>
+
+#include <Eigen/Core>
+#include <ceres/version.h>
+#include <nanoflann.hpp>
+#include <nlohmann/json.hpp>
+#include <opencv2/core/version.hpp>
+
+#include "evaluate/absolute_trajectory_error.hpp"
+#include "evaluate/relative_pose_error.hpp"
+#include "evaluate/trajectory.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+nlohmann::json toJson(const evaluate::Statistics& statistics) {
+  return {{"rmse", statistics.rmse}, {"mean", statistics.mean}, {"median", statistics.median},
+          {"std", statistics.std},   {"min", statistics.min},   {"max", statistics.max},
+          {"pairs", statistics.count}};
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
+  const FrameDecision& frame = filtered.stage.frame;
+  frames_with_boxes += frame.boxes > 0 ? 1 : 0;
+  frames_with_distances += frame.measured > 0 ? 1 : 0;
+  boxes += frame.boxes;
+  dynamic_boxes += frame.dynamic_boxes;
+  key_points += frame.points;
+  for (const PointLabel label : filtered.stage.label) {
+    ++labels[hmcdyn::toString(label)];
+  }
+  for (const EarlierFrameReport& report : filtered.earlier) {
+    ++models[hmcdyn::toString(report.motion.model.kind)];
+    ++fundamental[hmcdyn::toString(report.motion.verdict)];
+  }
+}
+
+void RunCounts::add(const TrackingResult& tracked) {
+  if (tracked.failure == TrackingFailure::kNone) {
+    ++frames_tracked;
+  } else {
+    ++failures[toString(tracked.failure)];
+  }
+  key_frames += tracked.new_key_frame ? 1 : 0;
+}
+
+std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptions& options) {
+  std::vector<std::string> warnings;
+  const FilterRule rule = options.filter.filter.stage.rule;
+  if (rule == FilterRule::kNone) {
+    return warnings;
+  }
+  const std::string asked = std::string("the filter '") + hmcdyn::toString(rule) + "' had nothing to do: ";
+  if (counts.frames_with_boxes == 0) {
+    warnings.push_back(asked + (options.detector.type == "none"
+                                    ? "there is no detector (--detector none)"
+                                    : "the detector found no box in any frame"));
+  }
+  if (counts.frames_with_distances == 0 && rule != FilterRule::kBox &&
+      rule != FilterRule::kDepthRansac) {
+    warnings.push_back(asked + "no key point could be matched with an earlier frame");
+  }
+  return warnings;
+}
+
+nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name) {
+  const FilterStageOptions& stage = options.filter.filter.stage;
+  const OpticalFlowOptions& flow = options.filter.filter.flow;
+  return {
+      {"dataset", options.dataset.string()},
+      {"camera", options.camera},
+      {"detector", detector_name},
+      {"classes", options.detector.classes},
+      {"score_threshold", options.detector.score_threshold},
+      {"nms_threshold", options.detector.nms_threshold},
+      {"filter", hmcdyn::toString(stage.rule)},
+      {"soft_weights", options.filter.soft_weights},
+      {"baselines_s", options.filter.baselines},
+      {"flow", {{"window_px", flow.window}, {"max_level", flow.max_level}}},
+      {"box_test",
+       {{"distance_threshold_px", stage.boxes.distance_threshold},
+        {"person_distance_threshold_px", stage.boxes.person_distance_threshold},
+        {"dynamic_ratio", stage.boxes.dynamic_ratio}}},
+      {"clustering",
+       {{"depth_scale_per_m", stage.clustering.depth_scale},
+        {"distance_scale_per_px", stage.clustering.distance_scale},
+        {"epsilon", stage.clustering.epsilon},
+        {"min_points", stage.clustering.min_points},
+        {"order", stage.clustering.order}}},
+      {"cluster_filter",
+       {{"min_cluster_size", stage.cluster_filter.min_cluster_size},
+        {"min_strongest_distance_px", stage.cluster_filter.min_strongest_distance},
+        {"screening_ratio", stage.cluster_filter.screening_ratio},
+        {"screening_floor_px", stage.cluster_filter.screening_floor},
+        {"place_unmatched_by_depth", stage.cluster_filter.place_unmatched_by_depth}}},
+      {"features", options.features.features},
+      {"max_depth_m", options.tracker.map.max_depth},
+      {"seed", options.seed},
+      {"max_frames", options.max_frames}};
+}
+
+nlohmann::json toJson(const RunCounts& counts) {
+  return {{"frames_in", counts.frames_in},
+          {"frames_tracked", counts.frames_tracked},
+          {"frames_unreadable", counts.frames_unreadable},
+          {"tracking_rate", share(counts.frames_tracked, counts.frames_in)},
+          {"key_frames", counts.key_frames},
+          {"frames_with_boxes", counts.frames_with_boxes},
+          {"frames_with_distances", counts.frames_with_distances},
+          {"boxes", counts.boxes},
+          {"dynamic_boxes", counts.dynamic_boxes},
+          {"key_points", counts.key_points},
+          {"labels", counts.labels},
+          {"motion_models", counts.models},
+          {"fundamental_verdicts", counts.fundamental},
+          {"tracking_failures", counts.failures}};
+}
+
+nlohmann::json libraryVersions() {
+  return {{"hmcdyn", HMCDYN_VERSION},
+          {"opencv", CV_VERSION},
+          {"ceres", CERES_VERSION_STRING},
+          {"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." +
+                        std::to_string(EIGEN_MAJOR_VERSION) + "." +
+                        std::to_string(EIGEN_MINOR_VERSION)},
+          {"nanoflann", std::to_string((NANOFLANN_VERSION >> 8) & 0xF) + "." +
+                            std::to_string((NANOFLANN_VERSION >> 4) & 0xF) + "." +
+                            std::to_string(NANOFLANN_VERSION & 0xF)}};
+}
+
+nlohmann::json evaluateTrajectory(const std::filesystem::path& groundtruth,
+                                  const std::filesystem::path& estimate) {
+  nlohmann::json result;
+  evaluate::Trajectory truth;
+  evaluate::Trajectory tracked;
+  try {
+    truth = evaluate::readTrajectory(groundtruth);
+    tracked = evaluate::readTrajectory(estimate);
+    result["ate_m"] = toJson(evaluate::absoluteTrajectoryError(truth, tracked).error);
+  } catch (const std::exception& error) {
+    result["error"] = error.what();
+    return result;
+  }
+  // A short clip has an ATE but no pair of poses 1 s apart.
+  try {
+    const evaluate::RpeResult rpe = evaluate::relativePoseError(truth, tracked);
+    result["rpe_translation_m_per_s"] = toJson(rpe.translation);
+    result["rpe_rotation_deg_per_s"] = toJson(rpe.rotation);
+  } catch (const std::exception& error) {
+    result["rpe_error"] = error.what();
+  }
+  return result;
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <hmcdyn/dynamic_feature_filter.hpp>
+
+#include "slam/pipeline/options.hpp"
+#include "slam/tracking/tracker.hpp"
+
+namespace hmcdyn::slam {
+
+/// What a run counted.
+struct RunCounts {
+  std::size_t frames_in = 0;        ///< Entries of the data set that were taken up.
+  std::size_t frames_unreadable = 0;
+  std::size_t frames_tracked = 0;
+  std::size_t key_frames = 0;
+  std::size_t frames_with_boxes = 0;
+  std::size_t frames_with_distances = 0;  ///< At least one key point had a distance.
+  std::size_t boxes = 0;
+  std::size_t dynamic_boxes = 0;
+  std::size_t key_points = 0;
+  std::map<std::string, std::size_t> labels;       ///< Key points by verdict.
+  std::map<std::string, std::size_t> models;       ///< Frame pairs by motion model.
+  std::map<std::string, std::size_t> fundamental;  ///< Frame pairs by verdict on F.
+  std::map<std::string, std::size_t> failures;     ///< Frames without a pose, by reason.
+
+  void add(const DynamicFeatureFilterResult& filtered);
+  void add(const TrackingResult& tracked);
+};
+
+/// One sentence a reason why the filter, though asked for, had nothing to judge by; empty if it had.
+std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptions& options);
+
+/// The options as JSON, complete enough to repeat the run.
+nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name);
+
+/// The counts as JSON, with the tracking rate (eq. 11).
+nlohmann::json toJson(const RunCounts& counts);
+
+/// Versions of this library and of what it was built with.
+nlohmann::json libraryVersions();
+
+/// ATE and RPE (1 s) of a trajectory, or an object with "error" where they cannot be computed.
+nlohmann::json evaluateTrajectory(const std::filesystem::path& groundtruth,
+                                  const std::filesystem::path& estimate);
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+
+#include <hmcdyn/types.hpp>
+
+#include "slam/features/orb_extractor.hpp"
+
+namespace hmcdyn::slam {
+
+/// "No map point": what a key point without one refers to.
+inline constexpr int kNoMapPoint = -1;
+
+/// A frame on its way through the tracker: what was seen, what the filter said, and where it is.
+struct Frame {
+  std::size_t index = 0;
+  double timestamp = 0.0;               ///< (s)
+  cv::Size size;                        ///< Of the image (px).
+  Features features;                    ///< N ORB key points with descriptors.
+  KeyPoints points;                     ///< The same N, with depth.
+  std::vector<float> sigma;             ///< N standard deviations of a pixel (px), by octave.
+  std::vector<PointLabel> label;        ///< N verdicts of the filter.
+  std::vector<float> weight;            ///< N weights of eq. 7.
+  std::vector<std::uint8_t> in_person;  ///< N flags: in the box of a person.
+  bool soft_weights = false;            ///< The 0.6 rule: eq. 7's weights, or 0 and 1 only.
+
+  Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
+  std::vector<int> map_point;  ///< N map points, or kNoMapPoint.
+  bool tracked = false;        ///< camera_from_world is a measurement.
+  std::size_t inliers = 0;     ///< Map points that agree with it.
+};
+
+/// Depth (m) at key points, the nearest pixel's; where that has none, the median of its eight
+/// neighbours that have one, provided they agree within 5 %; else 0.
+std::vector<float> depthAtKeyPoints(const cv::Mat& depth,
+                                    const std::vector<cv::KeyPoint>& key_points);
+
+/// A frame of features, not yet filtered or tracked: every point static, weight 1.
+/// @param depth CV_32FC1 (m), 0 = none.
+Frame makeFrame(std::size_t index, double timestamp, Features features, const cv::Mat& depth,
+                float scale_factor);
+
+}  // namespace hmcdyn::slam

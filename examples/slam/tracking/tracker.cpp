@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/tracking/tracker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+
+namespace hmcdyn::slam {
+namespace {
+
+constexpr std::size_t kMinPointsToStart = 50;
+
+/// The matched points as arrays for the refinement.
+struct ObservationArrays {
+  std::vector<float> x, y, z, u, v, sigma, depth, weight;
+
+  ObservationArrays(const Frame& frame, const std::vector<PointMatch>& matches, const Map& map) {
+    for (const PointMatch& match : matches) {
+      const Eigen::Vector3f point =
+          map.points()[static_cast<std::size_t>(match.map_point)].position.cast<float>();
+      x.push_back(point.x());
+      y.push_back(point.y());
+      z.push_back(point.z());
+      u.push_back(frame.points.u[match.key_point]);
+      v.push_back(frame.points.v[match.key_point]);
+      sigma.push_back(frame.sigma[match.key_point]);
+      depth.push_back(frame.points.depth[match.key_point]);
+      weight.push_back(frame.weight[match.key_point]);
+    }
+  }
+
+  PoseObservations view() const { return {x, y, z, u, v, sigma, depth, weight}; }
+};
+
+std::size_t staticPointsWithDepth(const Frame& frame) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    count += frame.in_person[i] == 0 && hasDepth(frame.points.depth[i]) ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+const char* toString(TrackingFailure failure) noexcept {
+  switch (failure) {
+    case TrackingFailure::kNone:
+      return "none";
+    case TrackingFailure::kTooFewKeyPoints:
+      return "too few key points";
+    case TrackingFailure::kTooFewMatches:
+      return "too few matches";
+  }
+  return "invalid";
+}
+
+Tracker::Tracker(const PinholeCamera& camera, TrackerOptions options)
+    : camera_(camera), options_(std::move(options)), map_(camera, options_.map) {}
+
+Eigen::Isometry3d Tracker::predict() const { return velocity_ * last_->camera_from_world; }
+
+PoseRefinementResult Tracker::refine(const Frame& frame, const std::vector<PointMatch>& matches,
+                                     const Eigen::Isometry3d& initial) const {
+  const ObservationArrays arrays(frame, matches, map_);
+  return refinePose(arrays.view(), camera_, initial, options_.refinement);
+}
+
+Tracker::Estimate Tracker::estimate(const Frame& frame, const KeyPointGrid& grid,
+                                    const std::vector<int>& candidates,
+                                    const Eigen::Isometry3d& around, float radius) const {
+  Estimate estimate;
+  estimate.search =
+      matchByProjection(frame, grid, map_, candidates, around, camera_, radius, options_.matcher);
+  estimate.refinement = refine(frame, estimate.search.matches, around);
+  return estimate;
+}
+
+std::optional<Eigen::Isometry3d> Tracker::relocalize(const Frame& frame) const {
+  const std::vector<KeyFrame>& key_frames = map_.keyFrames();
+  constexpr std::size_t kTries = 5;
+  for (std::size_t k = 0; k < std::min(kTries, key_frames.size()); ++k) {
+    const KeyFrame& key_frame = key_frames[key_frames.size() - 1 - k];
+    const std::vector<PointMatch> matches = matchByDescriptor(frame, key_frame, options_.matcher);
+    if (matches.size() < options_.min_inliers) {
+      continue;
+    }
+    std::vector<cv::Point3d> world;
+    std::vector<cv::Point2d> pixels;
+    for (const PointMatch& match : matches) {
+      const Eigen::Vector3d& p = map_.points()[static_cast<std::size_t>(match.map_point)].position;
+      world.emplace_back(p.x(), p.y(), p.z());
+      pixels.emplace_back(frame.points.u[match.key_point], frame.points.v[match.key_point]);
+    }
+    const cv::Matx33d intrinsics(camera_.fx, 0.0, camera_.cx, 0.0, camera_.fy, camera_.cy, 0.0, 0.0,
+                                 1.0);
+    cv::Vec3d rotation;
+    cv::Vec3d translation;
+    std::vector<int> inliers;
+    constexpr int kIterations = 200;
+    constexpr float kReprojection = 4.0f;  // px
+    constexpr double kConfidence = 0.999;
+    const bool found =
+        cv::solvePnPRansac(world, pixels, intrinsics, cv::noArray(), rotation, translation, false,
+                           kIterations, kReprojection, kConfidence, inliers, cv::SOLVEPNP_EPNP);
+    if (!found || inliers.size() < options_.min_inliers) {
+      continue;
+    }
+    const Eigen::Vector3d axis(rotation[0], rotation[1], rotation[2]);
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    if (axis.norm() > 0.0) {
+      pose.linear() = Eigen::AngleAxisd(axis.norm(), axis.normalized()).toRotationMatrix();
+    }
+    pose.translation() = Eigen::Vector3d(translation[0], translation[1], translation[2]);
+    return pose;
+  }
+  return std::nullopt;
+}
+
+bool Tracker::needsKeyFrame(const Frame& frame) const {
+  const KeyFrame& reference = map_.keyFrames().back();
+  const auto inliers = static_cast<double>(frame.inliers);
+  return frame.inliers < options_.key_frames.min_inliers ||
+         inliers <
+             options_.key_frames.min_reference_share * static_cast<double>(reference.map_points) ||
+         frame.index - reference.frame.index >= options_.key_frames.max_interval;
+}
+
+TrackingResult Tracker::initialize(Frame frame) {
+  TrackingResult result;
+  if (staticPointsWithDepth(frame) < kMinPointsToStart) {
+    result.failure = TrackingFailure::kTooFewKeyPoints;
+    return result;
+  }
+  frame.tracked = true;
+  map_.insertKeyFrame(frame);
+  result.new_key_frame = true;
+  result.inliers = map_.keyFrames().back().map_points;
+  last_ = std::move(frame);
+  return result;
+}
+
+TrackingResult Tracker::lose() {
+  lost_ = true;
+  velocity_ = Eigen::Isometry3d::Identity();
+  TrackingResult result;
+  result.failure = TrackingFailure::kTooFewMatches;
+  return result;
+}
+
+void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search) {
+  std::vector<std::uint8_t> found(map_.points().size(), 0);
+  std::vector<std::uint8_t> dynamic(map_.points().size(), 0);
+  for (const int point : frame.map_point) {
+    if (point != kNoMapPoint) {
+      found[static_cast<std::size_t>(point)] = 1;
+    }
+  }
+  for (const int point : search.seen_dynamic) {
+    dynamic[static_cast<std::size_t>(point)] = 1;
+  }
+  for (const int point : search.visible) {
+    const auto index = static_cast<std::size_t>(point);
+    map_.count(point, found[index] != 0, dynamic[index] != 0);
+  }
+}
+
+TrackingResult Tracker::track(Frame frame) {
+  if (!last_) {
+    return initialize(std::move(frame));
+  }
+  const KeyPointGrid grid(frame);
+  const std::vector<int> candidates = map_.localPoints();
+
+  Estimate coarse;
+  if (!lost_) {
+    coarse = estimate(frame, grid, candidates, predict(), options_.prediction_radius);
+    if (coarse.refinement.inliers < options_.min_inliers) {
+      coarse = estimate(frame, grid, candidates, last_->camera_from_world, options_.wide_radius);
+    }
+  }
+  if (coarse.refinement.inliers < options_.min_inliers) {
+    const std::optional<Eigen::Isometry3d> pose = relocalize(frame);
+    if (!pose) {
+      return lose();
+    }
+    coarse = estimate(frame, grid, candidates, *pose, options_.prediction_radius);
+  }
+
+  const Estimate fine = estimate(frame, grid, candidates, coarse.refinement.camera_from_world,
+                                 options_.refined_radius);
+  if (!fine.refinement.succeeded() || fine.refinement.inliers < options_.min_inliers) {
+    return lose();
+  }
+
+  for (std::size_t k = 0; k < fine.search.matches.size(); ++k) {
+    if (fine.refinement.inlier[k] != 0) {
+      frame.map_point[fine.search.matches[k].key_point] = fine.search.matches[k].map_point;
+    }
+  }
+  frame.camera_from_world = fine.refinement.camera_from_world;
+  frame.tracked = true;
+  frame.inliers = fine.refinement.inliers;
+  countSightings(frame, fine.search);
+
+  TrackingResult result;
+  result.matches = fine.search.matches.size();
+  result.inliers = frame.inliers;
+  result.camera_from_world = frame.camera_from_world;
+  velocity_ = lost_ ? Eigen::Isometry3d::Identity()
+                    : frame.camera_from_world * last_->camera_from_world.inverse();
+  lost_ = false;
+  if (needsKeyFrame(frame)) {
+    map_.cull();
+    map_.insertKeyFrame(frame);
+    result.new_key_frame = true;
+  }
+  last_ = std::move(frame);
+  return result;
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <hmcdyn/pose_refinement.hpp>
+#include <hmcdyn/types.hpp>
+
+#include "slam/tracking/frame.hpp"
+#include "slam/tracking/map.hpp"
+#include "slam/tracking/matcher.hpp"
+
+namespace hmcdyn::slam {
+
+struct KeyFramePolicy {
+  /// A new key frame is due when fewer than this share of the reference key frame's points ...
+  double min_reference_share = 0.8;
+  std::size_t min_inliers = 150;  ///< ... or fewer than so many points are tracked, ...
+  std::size_t max_interval = 10;  ///< ... or so many frames have passed since the last.
+};
+
+struct TrackerOptions {
+  MapOptions map;
+  MatcherOptions matcher;
+  PoseRefinementOptions refinement;
+  KeyFramePolicy key_frames;
+  float prediction_radius = 15.0f;  ///< Search window around the predicted pose (px).
+  float wide_radius = 40.0f;        ///< The same after a first failure (px).
+  float refined_radius = 5.0f;      ///< The same around the refined pose (px).
+  std::size_t min_inliers = 20;     ///< Fewer, and the frame is lost.
+  std::uint32_t seed = 1;           ///< Of the random draws in relocalisation.
+};
+
+/// Why a frame has no pose.
+enum class TrackingFailure : std::uint8_t {
+  kNone,             ///< It has one.
+  kTooFewKeyPoints,  ///< Not enough static key points with depth to start a map.
+  kTooFewMatches,    ///< Neither prediction nor relocalisation found enough map points.
+};
+
+/// "none", "too few key points" or "too few matches".
+const char* toString(TrackingFailure failure) noexcept;
+
+struct TrackingResult {
+  TrackingFailure failure = TrackingFailure::kNone;
+  bool new_key_frame = false;
+  std::size_t matches = 0;  ///< Map points matched in the last search.
+  std::size_t inliers = 0;  ///< Those that agree with the pose.
+  Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
+};
+
+/// Camera tracking against a small local map: constant-velocity prediction, projection matching,
+/// weighted refinement (eq. 9-10), key frames. The first frame's camera is the world's origin.
+class Tracker {
+ public:
+  Tracker(const PinholeCamera& camera, TrackerOptions options);
+
+  /// Tracks the next frame, whose points are labelled and weighted already.
+  TrackingResult track(Frame frame);
+
+  const Map& map() const noexcept { return map_; }
+
+ private:
+  struct Estimate {
+    PoseRefinementResult refinement;
+    ProjectionSearch search;
+  };
+
+  Eigen::Isometry3d predict() const;
+  Estimate estimate(const Frame& frame, const KeyPointGrid& grid,
+                    const std::vector<int>& candidates, const Eigen::Isometry3d& around,
+                    float radius) const;
+  PoseRefinementResult refine(const Frame& frame, const std::vector<PointMatch>& matches,
+                              const Eigen::Isometry3d& initial) const;
+  std::optional<Eigen::Isometry3d> relocalize(const Frame& frame) const;
+  bool needsKeyFrame(const Frame& frame) const;
+  TrackingResult initialize(Frame frame);
+  TrackingResult lose();
+  void countSightings(const Frame& frame, const ProjectionSearch& search);
+
+  PinholeCamera camera_;
+  TrackerOptions options_;
+  Map map_;
+  std::optional<Frame> last_;                                   ///< The last tracked frame.
+  Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  ///< Last step, camera from camera.
+  bool lost_ = false;
+};
+
+}  // namespace hmcdyn::slam
