@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -83,7 +84,7 @@ std::vector<IndexPair> associate(Span<const double> first, Span<const double> se
   const std::vector<Stamp> a = sorted(first, 0.0, "first");
   const std::vector<Stamp> b = sorted(second, options.offset, "second");
 
-  constexpr std::size_t kFree = static_cast<std::size_t>(-1);
+  constexpr std::size_t kFree = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> partner(a.size(), kFree);
   std::vector<bool> taken(b.size(), false);
   for (const Candidate& candidate : findCandidates(a, b, options.tolerance)) {
