@@ -16,8 +16,7 @@ int main() {
                                        0.1f, 0.2f, 0.1f, 2.5f, 0.1f, 0.2f};  // px, eq. 4
   const std::vector<hmcdyn::DetectionBox> boxes = {{290, 140, 370, 330}};
 
-  const hmcdyn::FilterStageResult result =
-      hmcdyn::filterKeyPoints({u, v, depth}, distance, boxes);
+  const hmcdyn::FilterStageResult result = hmcdyn::filterKeyPoints({u, v, depth}, distance, boxes);
 
   std::printf("  u    v  depth  distance  label      weight\n");
   for (std::size_t i = 0; i < u.size(); ++i) {

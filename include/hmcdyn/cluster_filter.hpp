@@ -21,7 +21,7 @@ struct ClusterFilterOptions {
   int min_cluster_size = 5;
   /// ... and at least this mean distance (px). 0 is the paper's rule, which also anchors in a box
   /// whose clusters all stand still, and then throws its background away.
-  float min_strongest_distance = 0.5f;
+  float min_strongest_distance = 0.8f;
   /// Rough screening: a cluster is dynamic when its mean distance exceeds the frame's by this
   /// factor (1 = the paper) ...
   float screening_ratio = 1.0f;

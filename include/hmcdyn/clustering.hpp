@@ -27,8 +27,8 @@ inline constexpr int kNoise = -1;
 struct ClusteringOptions {
   float depth_scale = 1.0f;      ///< s_z: weight of a depth difference (1/m).
   float distance_scale = 0.05f;  ///< s_d: weight of a distance difference (1/px).
-  float epsilon = 0.15f;         ///< d_eps: neighbourhood radius, after scaling (no unit).
-  int min_points = 4;            ///< MinPoints: points in a core point's neighbourhood, itself too.
+  float epsilon = 0.1f;          ///< d_eps: neighbourhood radius, after scaling (no unit).
+  int min_points = 5;            ///< MinPoints: points in a core point's neighbourhood, itself too.
   float order = 2.0f;  ///< p of the Minkowski distance, eq. 6; at least 1, may be infinite.
 };
 

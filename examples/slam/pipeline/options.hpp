@@ -16,20 +16,20 @@ namespace hmcdyn::slam {
 
 /// Everything that a run depends on.
 struct SlamOptions {
-  std::filesystem::path dataset;         ///< Folder in TUM format.
+  std::filesystem::path dataset;  ///< Folder in TUM format.
   DatasetOptions association;
-  std::string camera = "tum3";           ///< Preset or calibration file.
+  std::string camera = "tum3";  ///< Preset or calibration file.
   DetectorOptions detector;
   OrbOptions features;
   MotionFilterOptions filter;
   TrackerOptions tracker;
-  std::filesystem::path output;          ///< Folder for the results.
-  std::filesystem::path groundtruth;     ///< Empty = groundtruth.txt of the data set, where it is.
-  std::uint32_t seed = 1;                ///< Of every random draw.
-  std::size_t max_frames = 0;            ///< 0 = all.
-  bool annotate = false;                 ///< A picture a frame.
-  bool write_keypoints = false;          ///< keypoints.csv.
-  bool quiet = false;                    ///< No progress bar.
+  std::filesystem::path output;       ///< Folder for the results.
+  std::filesystem::path groundtruth;  ///< Empty = groundtruth.txt of the data set, where it is.
+  std::uint32_t seed = 1;             ///< Of every random draw.
+  std::size_t max_frames = 0;         ///< 0 = all.
+  bool annotate = false;              ///< A picture a frame.
+  bool write_keypoints = false;       ///< keypoints.csv.
+  bool quiet = false;                 ///< No progress bar.
 };
 
 /// Passes SlamOptions::seed on to every step that draws.

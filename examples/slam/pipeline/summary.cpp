@@ -17,8 +17,8 @@ namespace hmcdyn::slam {
 namespace {
 
 nlohmann::json toJson(const evaluate::Statistics& statistics) {
-  return {{"rmse", statistics.rmse}, {"mean", statistics.mean}, {"median", statistics.median},
-          {"std", statistics.std},   {"min", statistics.min},   {"max", statistics.max},
+  return {{"rmse", statistics.rmse},  {"mean", statistics.mean}, {"median", statistics.median},
+          {"std", statistics.std},    {"min", statistics.min},   {"max", statistics.max},
           {"pairs", statistics.count}};
 }
 
@@ -59,7 +59,8 @@ std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptio
   if (rule == FilterRule::kNone) {
     return warnings;
   }
-  const std::string asked = std::string("the filter '") + hmcdyn::toString(rule) + "' had nothing to do: ";
+  const std::string asked =
+      std::string("the filter '") + hmcdyn::toString(rule) + "' had nothing to do: ";
   if (counts.frames_with_boxes == 0) {
     warnings.push_back(asked + (options.detector.type == "none"
                                     ? "there is no detector (--detector none)"
@@ -75,37 +76,36 @@ std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptio
 nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name) {
   const FilterStageOptions& stage = options.filter.filter.stage;
   const OpticalFlowOptions& flow = options.filter.filter.flow;
-  return {
-      {"dataset", options.dataset.string()},
-      {"camera", options.camera},
-      {"detector", detector_name},
-      {"classes", options.detector.classes},
-      {"score_threshold", options.detector.score_threshold},
-      {"nms_threshold", options.detector.nms_threshold},
-      {"filter", hmcdyn::toString(stage.rule)},
-      {"soft_weights", options.filter.soft_weights},
-      {"baselines_s", options.filter.baselines},
-      {"flow", {{"window_px", flow.window}, {"max_level", flow.max_level}}},
-      {"box_test",
-       {{"distance_threshold_px", stage.boxes.distance_threshold},
-        {"person_distance_threshold_px", stage.boxes.person_distance_threshold},
-        {"dynamic_ratio", stage.boxes.dynamic_ratio}}},
-      {"clustering",
-       {{"depth_scale_per_m", stage.clustering.depth_scale},
-        {"distance_scale_per_px", stage.clustering.distance_scale},
-        {"epsilon", stage.clustering.epsilon},
-        {"min_points", stage.clustering.min_points},
-        {"order", stage.clustering.order}}},
-      {"cluster_filter",
-       {{"min_cluster_size", stage.cluster_filter.min_cluster_size},
-        {"min_strongest_distance_px", stage.cluster_filter.min_strongest_distance},
-        {"screening_ratio", stage.cluster_filter.screening_ratio},
-        {"screening_floor_px", stage.cluster_filter.screening_floor},
-        {"place_unmatched_by_depth", stage.cluster_filter.place_unmatched_by_depth}}},
-      {"features", options.features.features},
-      {"max_depth_m", options.tracker.map.max_depth},
-      {"seed", options.seed},
-      {"max_frames", options.max_frames}};
+  return {{"dataset", options.dataset.string()},
+          {"camera", options.camera},
+          {"detector", detector_name},
+          {"classes", options.detector.classes},
+          {"score_threshold", options.detector.score_threshold},
+          {"nms_threshold", options.detector.nms_threshold},
+          {"filter", hmcdyn::toString(stage.rule)},
+          {"soft_weights", options.filter.soft_weights},
+          {"baselines_s", options.filter.baselines},
+          {"flow", {{"window_px", flow.window}, {"max_level", flow.max_level}}},
+          {"box_test",
+           {{"distance_threshold_px", stage.boxes.distance_threshold},
+            {"person_distance_threshold_px", stage.boxes.person_distance_threshold},
+            {"dynamic_ratio", stage.boxes.dynamic_ratio}}},
+          {"clustering",
+           {{"depth_scale_per_m", stage.clustering.depth_scale},
+            {"distance_scale_per_px", stage.clustering.distance_scale},
+            {"epsilon", stage.clustering.epsilon},
+            {"min_points", stage.clustering.min_points},
+            {"order", stage.clustering.order}}},
+          {"cluster_filter",
+           {{"min_cluster_size", stage.cluster_filter.min_cluster_size},
+            {"min_strongest_distance_px", stage.cluster_filter.min_strongest_distance},
+            {"screening_ratio", stage.cluster_filter.screening_ratio},
+            {"screening_floor_px", stage.cluster_filter.screening_floor},
+            {"place_unmatched_by_depth", stage.cluster_filter.place_unmatched_by_depth}}},
+          {"features", options.features.features},
+          {"max_depth_m", options.tracker.map.max_depth},
+          {"seed", options.seed},
+          {"max_frames", options.max_frames}};
 }
 
 nlohmann::json toJson(const RunCounts& counts) {
@@ -126,15 +126,15 @@ nlohmann::json toJson(const RunCounts& counts) {
 }
 
 nlohmann::json libraryVersions() {
-  return {{"hmcdyn", HMCDYN_VERSION},
-          {"opencv", CV_VERSION},
-          {"ceres", CERES_VERSION_STRING},
-          {"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." +
-                        std::to_string(EIGEN_MAJOR_VERSION) + "." +
-                        std::to_string(EIGEN_MINOR_VERSION)},
-          {"nanoflann", std::to_string((NANOFLANN_VERSION >> 8) & 0xF) + "." +
-                            std::to_string((NANOFLANN_VERSION >> 4) & 0xF) + "." +
-                            std::to_string(NANOFLANN_VERSION & 0xF)}};
+  return {
+      {"hmcdyn", HMCDYN_VERSION},
+      {"opencv", CV_VERSION},
+      {"ceres", CERES_VERSION_STRING},
+      {"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                    "." + std::to_string(EIGEN_MINOR_VERSION)},
+      {"nanoflann", std::to_string((NANOFLANN_VERSION >> 8) & 0xF) + "." +
+                        std::to_string((NANOFLANN_VERSION >> 4) & 0xF) + "." +
+                        std::to_string(NANOFLANN_VERSION & 0xF)}};
 }
 
 nlohmann::json evaluateTrajectory(const std::filesystem::path& groundtruth,

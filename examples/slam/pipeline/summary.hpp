@@ -18,7 +18,7 @@ namespace hmcdyn::slam {
 
 /// What a run counted.
 struct RunCounts {
-  std::size_t frames_in = 0;        ///< Entries of the data set that were taken up.
+  std::size_t frames_in = 0;  ///< Entries of the data set that were taken up.
   std::size_t frames_unreadable = 0;
   std::size_t frames_tracked = 0;
   std::size_t key_frames = 0;
@@ -36,7 +36,8 @@ struct RunCounts {
   void add(const TrackingResult& tracked);
 };
 
-/// One sentence a reason why the filter, though asked for, had nothing to judge by; empty if it had.
+/// One sentence a reason why the filter, though asked for, had nothing to judge by; empty if it
+/// had.
 std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptions& options);
 
 /// The options as JSON, complete enough to repeat the run.

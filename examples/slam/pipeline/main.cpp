@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "slam/pipeline/command_line.hpp"
+#include "slam/pipeline/run.hpp"
+
+namespace {
+
+constexpr int kBadData = 1;
+constexpr int kBadUsage = 2;
+
+void printSummary(const nlohmann::json& summary, const std::filesystem::path& output) {
+  const nlohmann::json& counts = summary.at("counts");
+  std::cout << "tracked " << counts.at("frames_tracked") << " of " << counts.at("frames_in")
+            << " frames";
+  if (summary.contains("evaluation") && summary.at("evaluation").contains("ate_m")) {
+    std::cout << ", ATE RMSE " << summary.at("evaluation").at("ate_m").at("rmse").get<double>()
+              << " m over " << summary.at("evaluation").at("ate_m").at("pairs") << " poses";
+  }
+  std::cout << "\nresults in " << output.string() << '\n';
+}
+
+int run(int argc, char** argv) {
+  hmcdyn::slam::SlamOptions options;
+  CLI::App app;
+  hmcdyn::slam::declareOptions(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? EXIT_SUCCESS : kBadUsage;
+  }
+  try {
+    const nlohmann::json summary = hmcdyn::slam::runSlam(options);
+    printSummary(summary, options.output);
+    return summary.at("counts").at("frames_tracked") > 0 ? EXIT_SUCCESS : kBadData;
+  } catch (const std::invalid_argument& error) {
+    spdlog::error("{}", error.what());
+    return kBadUsage;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    // Logs go to standard error; standard output is the result.
+    spdlog::set_default_logger(spdlog::stderr_color_mt("hmcdyn_slam"));
+    spdlog::set_pattern("%^%l%$: %v");
+    cv::setNumThreads(1);  // no hidden threads; one seed, one result
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kBadData;
+  }
+}

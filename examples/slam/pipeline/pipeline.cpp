@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/pipeline/pipeline.hpp"
+
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "slam/detection/detector_factory.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+/// Where corners are the world's: the border of the rectified image is an edge that is none.
+cv::Mat cornerMask(const Rectifier& rectifier) {
+  if (rectifier.isIdentity()) {
+    return {};
+  }
+  cv::Mat mask;
+  constexpr int kPatch = 2 * 19 + 1;  // px, the descriptor's patch
+  cv::erode(rectifier.validMask(), mask,
+            cv::getStructuringElement(cv::MORPH_RECT, cv::Size(kPatch, kPatch)));
+  return mask;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibration)
+    : boxes_are_raw_(options.detector.type == "file"),
+      rectifier_(calibration),
+      valid_mask_(cornerMask(rectifier_)),
+      detector_(makeDetector(options.detector)),
+      extractor_(options.features),
+      filter_(options.filter),
+      tracker_(calibration.pinhole, options.tracker) {}
+
+std::vector<DetectionBox> Pipeline::detect(const RgbdFrame& raw, const RgbdFrame& rectified) {
+  if (!boxes_are_raw_) {
+    return detector_->detect(rectified.bgr, rectified.timestamp);
+  }
+  std::vector<DetectionBox> boxes = detector_->detect(raw.bgr, raw.timestamp);
+  for (DetectionBox& box : boxes) {
+    box = rectifier_.box(box);
+  }
+  return boxes;
+}
+
+FrameOutcome Pipeline::process(const RgbdFrame& raw) {
+  FrameOutcome outcome;
+  StageTimes& times = outcome.times;
+  outcome.image = times.measure("rectify", [&] { return rectify(raw, rectifier_); });
+  const RgbdFrame& image = outcome.image;
+  outcome.boxes = times.measure("detect", [&] { return detect(raw, image); });
+
+  Frame frame = times.measure("features", [&] {
+    return makeFrame(image.index, image.timestamp, extractor_.extract(image.gray, valid_mask_),
+                     image.depth, extractor_.options().scale_factor);
+  });
+  outcome.filtered =
+      times.measure("filter", [&] { return filter_.filter(image.gray, outcome.boxes, frame); });
+  outcome.points = frame.points;
+  outcome.weight = frame.weight;
+  outcome.tracking = times.measure("track", [&] { return tracker_.track(std::move(frame)); });
+  return outcome;
+}
+
+}  // namespace hmcdyn::slam
