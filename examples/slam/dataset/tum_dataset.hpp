@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hmcdyn::slam {
+
+/// Where a frame of a data set lies.
+struct FrameEntry {
+  std::size_t index = 0;        ///< Place in the list, from 0.
+  double timestamp = 0.0;       ///< Of the colour image (s); formatTimestamp() writes it back.
+  std::filesystem::path rgb;    ///< Colour image.
+  std::filesystem::path depth;  ///< Depth image, registered to the colour image.
+};
+
+/// How colour and depth images are paired.
+struct DatasetOptions {
+  /// File with lines "time rgb_file time depth_file". Empty = associations.txt in the folder
+  /// where there is one, else rgb.txt and depth.txt are paired by time stamp.
+  std::filesystem::path associations;
+  /// Largest difference of paired time stamps (s), for rgb.txt with depth.txt. At least 0.
+  double time_tolerance = 0.02;
+};
+
+/// The frames of a folder in the format of the TUM RGB-D benchmark (BONN's is the same), in the
+/// order of their time stamps. Lines may be commented out with '#'; a line that is repeated counts
+/// once; file names are relative to the folder. An entry may name a file that is missing, since
+/// lists often go beyond the images at hand: loadFrame() reports it.
+/// @throws std::invalid_argument where the tolerance is negative or NaN.
+/// @throws std::runtime_error that names folder, file and line where the folder or a list is
+/// missing, empty or malformed, a time stamp names two files, no two time stamps are within the
+/// tolerance, or not one frame has both its files.
+std::vector<FrameEntry> listFrames(const std::filesystem::path& folder,
+                                   const DatasetOptions& options = {});
+
+/// A time stamp (s) with six decimals, as TUM writes it. A double holds a time since 1970 to
+/// 2.4e-7 s, half of the sixth decimal: stamps of up to six decimals come back digit by digit.
+std::string formatTimestamp(double timestamp);
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/detection/coco_classes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hmcdyn::slam {
+namespace {
+
+constexpr std::array<std::string_view, kCocoClassCount> kNames{
+    "person",        "bicycle",      "car",
+    "motorcycle",    "airplane",     "bus",
+    "train",         "truck",        "boat",
+    "traffic light", "fire hydrant", "stop sign",
+    "parking meter", "bench",        "bird",
+    "cat",           "dog",          "horse",
+    "sheep",         "cow",          "elephant",
+    "bear",          "zebra",        "giraffe",
+    "backpack",      "umbrella",     "handbag",
+    "tie",           "suitcase",     "frisbee",
+    "skis",          "snowboard",    "sports ball",
+    "kite",          "baseball bat", "baseball glove",
+    "skateboard",    "surfboard",    "tennis racket",
+    "bottle",        "wine glass",   "cup",
+    "fork",          "knife",        "spoon",
+    "bowl",          "banana",       "apple",
+    "sandwich",      "orange",       "broccoli",
+    "carrot",        "hot dog",      "pizza",
+    "donut",         "cake",         "chair",
+    "couch",         "potted plant", "bed",
+    "dining table",  "toilet",       "tv",
+    "laptop",        "mouse",        "remote",
+    "keyboard",      "cell phone",   "microwave",
+    "oven",          "toaster",      "sink",
+    "refrigerator",  "book",         "clock",
+    "vase",          "scissors",     "teddy bear",
+    "hair drier",    "toothbrush"};
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kDarknetSpellings{{
+    {"motorbike", "motorcycle"},
+    {"aeroplane", "airplane"},
+    {"sofa", "couch"},
+    {"pottedplant", "potted plant"},
+    {"diningtable", "dining table"},
+    {"tvmonitor", "tv"},
+}};
+
+}  // namespace
+
+std::string cocoClassName(int class_id) {
+  if (class_id < 0 || class_id >= kCocoClassCount) {
+    throw std::invalid_argument(fmt::format("cocoClassName: class_id is {}; expected 0..{}",
+                                            class_id, kCocoClassCount - 1));
+  }
+  return std::string(kNames[static_cast<std::size_t>(class_id)]);
+}
+
+std::optional<int> findCocoClass(const std::string& name) {
+  std::string wanted = name;
+  std::replace(wanted.begin(), wanted.end(), '_', ' ');
+  for (const auto& [darknet, coco] : kDarknetSpellings) {
+    if (wanted == darknet) {
+      wanted = coco;
+    }
+  }
+  const auto* const found = std::find(kNames.begin(), kNames.end(), wanted);
+  if (found == kNames.end()) {
+    return std::nullopt;
+  }
+  return static_cast<int>(found - kNames.begin());
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/detection/detector_factory.hpp"
+
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "slam/detection/box_selection.hpp"
+#include "slam/detection/coco_classes.hpp"
+#include "slam/detection/darknet_detector.hpp"
+#include "slam/detection/file_detector.hpp"
+#include "slam/detection/hog_detector.hpp"
+#include "slam/detection/onnx_detector.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+class NoDetector final : public ObjectDetector {
+ public:
+  std::vector<DetectionBox> detect(const cv::Mat& bgr, double /*timestamp*/) override {
+    checkColorImage(bgr);
+    return {};
+  }
+  std::string name() const override { return "none"; }
+};
+
+struct DetectorType {
+  const char* name;
+  std::unique_ptr<ObjectDetector> (*make)(const DetectorOptions&);
+};
+
+constexpr std::array<DetectorType, 5> kTypes{{
+    {"darknet", makeDarknetDetector},
+    {"yolo", makeOnnxDetector},
+    {"file", makeFileDetector},
+    {"hog", makeHogDetector},
+    {"none",
+     [](const DetectorOptions&) -> std::unique_ptr<ObjectDetector> {
+       return std::make_unique<NoDetector>();
+     }},
+}};
+
+void requireShare(const char* option, float value) {
+  if (!(value >= 0.0f && value <= 1.0f)) {
+    throw std::invalid_argument(
+        fmt::format("DetectorOptions::{} is {}; expected 0..1", option, value));
+  }
+}
+
+void checkOptions(const DetectorOptions& options) {
+  requireShare("score_threshold", options.score_threshold);
+  requireShare("nms_threshold", options.nms_threshold);
+  constexpr int kLargestInput = 4096;
+  if (options.input_size < 0 || options.input_size > kLargestInput ||
+      options.input_size % 32 != 0) {
+    throw std::invalid_argument(
+        fmt::format("DetectorOptions::input_size is {}; expected 0 or a multiple of 32 up to {}",
+                    options.input_size, kLargestInput));
+  }
+  if (!(options.time_tolerance >= 0.0)) {
+    throw std::invalid_argument(fmt::format(
+        "DetectorOptions::time_tolerance is {} s; expected 0 or more", options.time_tolerance));
+  }
+  for (const int class_id : options.classes) {
+    if (class_id < 0 || class_id >= kCocoClassCount) {
+      throw std::invalid_argument(
+          fmt::format("DetectorOptions::classes has {}; expected COCO classes 0..{}", class_id,
+                      kCocoClassCount - 1));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> detectorTypes() {
+  std::vector<std::string> names;
+  names.reserve(kTypes.size());
+  for (const DetectorType& type : kTypes) {
+    names.emplace_back(type.name);
+  }
+  return names;
+}
+
+std::unique_ptr<ObjectDetector> makeDetector(const DetectorOptions& options) {
+  checkOptions(options);
+  for (const DetectorType& type : kTypes) {
+    if (options.type == type.name) {
+      return type.make(options);
+    }
+  }
+  throw std::invalid_argument(fmt::format("detector '{}' is unknown; expected one of {}",
+                                          options.type, fmt::join(detectorTypes(), ", ")));
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/detection/file_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "slam/dataset/file_io.hpp"
+#include "slam/detection/box_selection.hpp"
+#include "slam/detection/coco_classes.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+constexpr std::size_t kNumbersBehindClass = 5;  // x_min y_min x_max y_max score
+constexpr std::size_t kLeastFields = 2 + kNumbersBehindClass;
+
+// Names such as "traffic light" spread over two fields.
+int parseClass(const TextRow& row, const std::filesystem::path& file) {
+  const auto end = row.fields.end() - kNumbersBehindClass;
+  const std::string text = fmt::format("{}", fmt::join(row.fields.begin() + 1, end, " "));
+  if (const auto class_id = findCocoClass(text)) {
+    return *class_id;
+  }
+  for (int class_id = 0; class_id < kCocoClassCount; ++class_id) {
+    if (text == std::to_string(class_id)) {
+      return class_id;
+    }
+  }
+  throw errorAt(file, row.line,
+                fmt::format("class is '{}'; expected 0..{} or the name of a COCO class", text,
+                            kCocoClassCount - 1));
+}
+
+TimedBox parseRow(const TextRow& row, const std::filesystem::path& file) {
+  if (row.fields.size() < kLeastFields) {
+    throw errorAt(file, row.line,
+                  fmt::format("{} fields; expected \"timestamp class x_min y_min x_max y_max "
+                              "score\"",
+                              row.fields.size()));
+  }
+  const std::size_t first = row.fields.size() - kNumbersBehindClass;
+  const auto number = [&](std::size_t i, const char* what) {
+    return static_cast<float>(parseFinite(row.fields[first + i], what, file, row.line));
+  };
+  TimedBox timed;
+  timed.timestamp = parseFinite(row.fields.front(), "timestamp", file, row.line);
+  timed.box.class_id = parseClass(row, file);
+  timed.box.x_min = number(0, "x_min");
+  timed.box.y_min = number(1, "y_min");
+  timed.box.x_max = number(2, "x_max");
+  timed.box.y_max = number(3, "y_max");
+  timed.box.score = number(4, "score");
+  if (timed.box.score < 0.0f || timed.box.score > 1.0f) {
+    throw errorAt(file, row.line, fmt::format("score is {}; expected 0..1", timed.box.score));
+  }
+  return timed;
+}
+
+class FileDetector final : public ObjectDetector {
+ public:
+  FileDetector(std::vector<TimedBox> boxes, DetectorOptions options)
+      : boxes_(std::move(boxes)), options_(std::move(options)) {}
+
+  std::vector<DetectionBox> detect(const cv::Mat& bgr, double timestamp) override {
+    checkColorImage(bgr);
+    std::vector<DetectionBox> boxes;
+    const auto [first, last] = nearest(timestamp);
+    for (auto timed = first; timed != last; ++timed) {
+      boxes.push_back(timed->box);
+    }
+    std::vector<DetectionBox> kept = clipToImage(keepWanted(boxes, options_), bgr.size());
+    std::stable_sort(kept.begin(), kept.end(), [](const DetectionBox& a, const DetectionBox& b) {
+      return a.score > b.score;
+    });
+    return kept;
+  }
+
+  std::string name() const override {
+    return fmt::format("file {}", options_.boxes.filename().string());
+  }
+
+ private:
+  using Iterator = std::vector<TimedBox>::const_iterator;
+
+  // The boxes of the time stamp nearest to this one, none where it is too far; of two equally
+  // near, the earlier.
+  std::pair<Iterator, Iterator> nearest(double timestamp) const {
+    const auto earlier = [](const TimedBox& timed, double time) { return timed.timestamp < time; };
+    auto candidate = std::lower_bound(boxes_.begin(), boxes_.end(), timestamp, earlier);
+    if (candidate != boxes_.begin() &&
+        (candidate == boxes_.end() ||
+         timestamp - std::prev(candidate)->timestamp <= candidate->timestamp - timestamp)) {
+      --candidate;
+    }
+    if (candidate == boxes_.end() ||
+        !(std::abs(candidate->timestamp - timestamp) <= options_.time_tolerance)) {
+      return {boxes_.end(), boxes_.end()};
+    }
+    const double time = candidate->timestamp;
+    const auto first = std::lower_bound(boxes_.begin(), boxes_.end(), time, earlier);
+    const auto last = std::find_if(
+        first, boxes_.end(), [time](const TimedBox& timed) { return timed.timestamp != time; });
+    return {first, last};
+  }
+
+  std::vector<TimedBox> boxes_;
+  DetectorOptions options_;
+};
+
+}  // namespace
+
+std::vector<TimedBox> readBoxFile(const std::filesystem::path& file) {
+  std::vector<TimedBox> boxes;
+  for (const TextRow& row : readTextRows(file)) {
+    boxes.push_back(parseRow(row, file));
+  }
+  std::stable_sort(boxes.begin(), boxes.end(), [](const TimedBox& left, const TimedBox& right) {
+    return left.timestamp < right.timestamp;
+  });
+  return boxes;
+}
+
+std::unique_ptr<ObjectDetector> makeFileDetector(const DetectorOptions& options) {
+  if (options.boxes.empty()) {
+    throw std::invalid_argument("detector 'file': --boxes is not given; it needs --boxes FILE");
+  }
+  return std::make_unique<FileDetector>(readBoxFile(options.boxes), options);
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "slam/detection/detector.hpp"
+#include "slam/detection/detector_options.hpp"
+
+namespace hmcdyn::slam {
+
+/// YOLOv5 or YOLOv8 as ONNX, run by OpenCV; the head is told by its output's shape.
+/// @throws std::invalid_argument where the model is not given.
+/// @throws std::runtime_error that names the file and the OpenCV version where the file is
+/// missing, the importer refuses it (OpenCV 4.6 knows neither float16 weights nor stock YOLOv8
+/// exports), it does not run with this input size, or no output has a head's shape.
+std::unique_ptr<ObjectDetector> makeOnnxDetector(const DetectorOptions& options);
+
+}  // namespace hmcdyn::slam
