@@ -209,10 +209,9 @@ TEST(BoxDynamism, MembershipOfOtherBoxesOrPointsIsRefused) {
   EXPECT_EQ(test::invalidArgumentOf([&] { testBoxes(four, {}, membership, paperOptions()); }),
             "testBoxes: membership of 1 boxes for 0 boxes");
   // Point 3 is in the box, but has no distance.
-  EXPECT_EQ(
-      test::invalidArgumentOf([&] { testBoxes(three, boxes, membership, paperOptions()); }),
-      "testBoxes: membership holds point 3, but there are 3 distances; expected the membership "
-      "of these points");
+  EXPECT_EQ(test::invalidArgumentOf([&] { testBoxes(three, boxes, membership, paperOptions()); }),
+            "testBoxes: membership holds point 3, but there are 3 points; expected the membership "
+            "of these points");
 }
 
 TEST(BoxDynamism, OptionsOutOfRangeAreNamed) {

@@ -79,7 +79,7 @@ inline void checkMembership(const char* caller, const BoxMembership& membership,
     throw std::invalid_argument(std::string(caller) + ": membership holds point " +
                                 std::to_string(*largest) + ", but there are " +
                                 std::to_string(points) +
-                                " distances; expected the membership of these points");
+                                " points; expected the membership of these points");
   }
 }
 
