@@ -23,10 +23,13 @@ void checkInput(const DynamicFeatureFilterInput& input,
     if (options.distance == DistanceKind::kTwoView) {
       continue;
     }
-    if (!frame.current_from_earlier || frame.depth.empty() || frame.depth.type() != CV_32FC1) {
+    const bool has_depth =
+        frame.depth.type() == CV_32FC1 && !frame.depth.empty() &&
+        (frame.pyramid->empty() || frame.depth.size() == frame.pyramid->front().size());
+    if (!frame.current_from_earlier || !has_depth) {
       throw std::invalid_argument(
           "filterDynamicFeatures: the ego-motion distance needs current_from_earlier and depth "
-          "(CV_32FC1, m) of every earlier frame");
+          "(CV_32FC1, m, of the image's size) of every earlier frame");
     }
     if (!(input.camera.fx > 0.0 && input.camera.fy > 0.0)) {
       throw std::invalid_argument(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eight_point.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -51,21 +52,28 @@ Eigen::Matrix3d withRankTwo(const Eigen::Matrix3d& matrix) {
   return svd.matrixU() * singular.asDiagonal() * svd.matrixV().transpose();
 }
 
-EightPointFit solve(const std::vector<const Match*>& matches, const Eigen::Matrix3d& weights_from) {
+/// Nothing where every weight vanishes (all matches at the epipoles of `weights_from`).
+std::optional<EightPointFit> solve(const std::vector<const Match*>& matches,
+                                   const Eigen::Matrix3d& weights_from) {
   const Eigen::Matrix3d earlier_normal =
       normalization(matches, [](const Match& match) { return match.earlier; });
   const Eigen::Matrix3d current_normal =
       normalization(matches, [](const Match& match) { return match.current; });
-  Matrix9d normal_equations = Matrix9d::Zero();
+  Matrix9d weighted = Matrix9d::Zero();
+  Matrix9d unweighted = Matrix9d::Zero();
   for (const Match* match : matches) {
     const Eigen::Vector3d p1 = earlier_normal * match->earlier.homogeneous();
     const Eigen::Vector3d p2 = current_normal * match->current.homogeneous();
     Vector9d row;
     row << p2.x() * p1, p2.y() * p1, p1;  // eq. 2, linear in F's rows
+    unweighted.selfadjointView<Eigen::Lower>().rankUpdate(row);
     row *= sampsonWeight(weights_from, *match);
-    normal_equations.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    weighted.selfadjointView<Eigen::Lower>().rankUpdate(row);
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(normal_equations);
+  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(weighted);
+  if (!(eigen.eigenvalues()(8) > 0.0)) {
+    return std::nullopt;
+  }
   const Vector9d f = eigen.eigenvectors().col(0);
   Eigen::Matrix3d normalized;
   normalized << f.segment<3>(0).transpose(), f.segment<3>(3).transpose(),
@@ -74,11 +82,14 @@ EightPointFit solve(const std::vector<const Match*>& matches, const Eigen::Matri
   EightPointFit fit;
   fit.fundamental = current_normal.transpose() * withRankTwo(normalized) * earlier_normal;
   fit.fundamental /= fit.fundamental.norm();
-  const double smallest = std::max(eigen.eigenvalues()(0), 0.0);
-  const double second = std::max(eigen.eigenvalues()(1), 0.0);
+  // Without the weights: they belong to one solution and make it look better than its rivals, so
+  // that one rotation in five would pass for a translation.
+  const Vector9d eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Matrix9d>(unweighted, Eigen::EigenvaluesOnly).eigenvalues();
   // Exact data: the smallest value is rounding, and any signal at all is well above it.
-  const double rounding = std::numeric_limits<double>::epsilon() * eigen.eigenvalues()(8);
-  fit.conditioning = std::sqrt((second + rounding) / (smallest + rounding));
+  const double rounding = std::numeric_limits<double>::epsilon() * eigenvalues(8);
+  fit.conditioning = std::sqrt((std::max(eigenvalues(1), 0.0) + rounding) /
+                               (std::max(eigenvalues(0), 0.0) + rounding));
   return fit;
 }
 
@@ -105,7 +116,11 @@ std::optional<EightPointFit> refitFundamental(const std::vector<Match>& matches,
     if (inliers.size() < 8) {
       return fit;
     }
-    fit = solve(inliers, current);
+    const std::optional<EightPointFit> next = solve(inliers, current);
+    if (!next) {
+      return fit;
+    }
+    fit = next;
     current = fit->fundamental;
   }
   return fit;

@@ -20,12 +20,13 @@ double sampsonDistance(const Eigen::Matrix3d& fundamental, const Match& match);
 
 struct EightPointFit {
   Eigen::Matrix3d fundamental;
-  double conditioning = 0.0;  ///< Second smallest over smallest singular value of the system.
+  /// Second smallest over smallest singular value of the normalised, unweighted system.
+  double conditioning = 0.0;
 };
 
 /// Normalised eight-point algorithm (Hartley 1997) over the matches within `threshold` (px,
 /// Sampson) of `start`, re-weighted so that it minimises Sampson distances; nothing with fewer than
-/// 8 left.
+/// 8 left, or with all of them at the epipoles.
 std::optional<EightPointFit> refitFundamental(const std::vector<Match>& matches,
                                               const Eigen::Matrix3d& start, double threshold,
                                               int rounds);

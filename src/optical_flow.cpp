@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -28,6 +29,21 @@ void checkOptions(const OpticalFlowOptions& options) {
           options.max_forward_backward_error, "a value > 0 (px)");
 }
 
+/// Width of the border around the image that the pyramid was built with (px): its largest window.
+int borderOf(const FlowPyramid& pyramid) {
+  cv::Size whole;
+  cv::Point offset;
+  pyramid.front().locateROI(whole, offset);
+  return std::min({offset.x, offset.y, whole.width - offset.x - pyramid.front().cols,
+                   whole.height - offset.y - pyramid.front().rows});
+}
+
+/// False for NaN, too.
+bool isInside(const cv::Size& size, float u, float v) {
+  return u >= 0.0f && u <= static_cast<float>(size.width - 1) && v >= 0.0f &&
+         v <= static_cast<float>(size.height - 1);
+}
+
 }  // namespace
 
 FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& options) {
@@ -38,8 +54,13 @@ FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& opti
                                 "; expected 8-bit gray (CV_8UC1)");
   }
   FlowPyramid pyramid;
+  // A part of a larger image could serve without a copy, but would take its border, and every later
+  // change, from the caller's pixels.
+  constexpr bool kWithDerivatives = true;
+  constexpr bool kReuseInput = false;
   cv::buildOpticalFlowPyramid(gray, pyramid, cv::Size(options.window, options.window),
-                              options.max_level);
+                              options.max_level, kWithDerivatives, cv::BORDER_REFLECT_101,
+                              cv::BORDER_CONSTANT, kReuseInput);
   return pyramid;
 }
 
@@ -52,6 +73,12 @@ FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid&
         "trackIntoEarlierFrame: expected two pyramids of one image size, as buildFlowPyramid "
         "makes");
   }
+  const int border = std::min(borderOf(current), borderOf(earlier));
+  if (border < options.window) {
+    throw std::invalid_argument("trackIntoEarlierFrame: window is " +
+                                std::to_string(options.window) + ", but a pyramid was built for " +
+                                std::to_string(border) + "; expected at most that");
+  }
   const cv::Size size = current.front().size();
 
   FlowMatches matches;
@@ -60,8 +87,7 @@ FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid&
   std::vector<std::size_t> source;  // which key point each tracked point is
   std::vector<cv::Point2f> start;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points.u[i] >= 0.0f && points.u[i] <= static_cast<float>(size.width - 1) &&
-        points.v[i] >= 0.0f && points.v[i] <= static_cast<float>(size.height - 1)) {
+    if (isInside(size, points.u[i], points.v[i])) {
       source.push_back(i);
       start.emplace_back(points.u[i], points.v[i]);
     }
@@ -84,7 +110,7 @@ FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid&
                            options.max_level, until);
   for (std::size_t k = 0; k < start.size(); ++k) {
     const cv::Point2f loop = forth[k] - start[k];
-    if (found_back[k] != 0 && found_forth[k] != 0 &&
+    if (found_back[k] != 0 && found_forth[k] != 0 && isInside(size, back[k].x, back[k].y) &&
         std::hypot(loop.x, loop.y) <= options.max_forward_backward_error) {
       matches.u[source[k]] = back[k].x;
       matches.v[source[k]] = back[k].y;

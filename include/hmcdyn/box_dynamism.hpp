@@ -69,6 +69,22 @@ inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const Detec
   return reuse;
 }
 
+namespace detail {
+
+/// @throws std::invalid_argument when a box holds a point beyond the first `points`.
+inline void checkMembership(const char* caller, const BoxMembership& membership,
+                            std::size_t points) {
+  const auto largest = std::max_element(membership.indices.begin(), membership.indices.end());
+  if (largest != membership.indices.end() && *largest >= points) {
+    throw std::invalid_argument(std::string(caller) + ": membership holds point " +
+                                std::to_string(*largest) + ", but there are " +
+                                std::to_string(points) +
+                                " points; expected the membership of these points");
+  }
+}
+
+}  // namespace detail
+
 /// What the test counted in one box.
 struct BoxVerdict {
   std::size_t points = 0;    ///< Key points in the box.
@@ -98,6 +114,7 @@ inline BoxDynamism testBoxes(Span<const float> distance, Span<const DetectionBox
     throw std::invalid_argument("testBoxes: membership of " + std::to_string(membership.boxes()) +
                                 " boxes for " + std::to_string(boxes.size()) + " boxes");
   }
+  detail::checkMembership("testBoxes", membership, distance.size());
   constexpr float kInNoBox = std::numeric_limits<float>::infinity();
   reuse.threshold.assign(distance.size(), kInNoBox);
   for (std::size_t b = 0; b < boxes.size(); ++b) {

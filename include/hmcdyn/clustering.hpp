@@ -29,7 +29,7 @@ struct ClusteringOptions {
   float distance_scale = 0.05f;  ///< s_d: weight of a distance difference (1/px).
   float epsilon = 0.1f;          ///< d_eps: neighbourhood radius, after scaling (no unit).
   int min_points = 5;            ///< MinPoints: points in a core point's neighbourhood, itself too.
-  float order = 2.0f;  ///< p of the Minkowski distance, eq. 6; at least 1, may be infinite.
+  float order = 2.0f;            ///< p of the Minkowski distance, eq. 6; 1 to 100, or infinite.
 };
 
 /// @throws std::invalid_argument naming the first option out of range.
@@ -44,11 +44,14 @@ inline void checkOptions(const ClusteringOptions& options) {
           options.depth_scale, "a finite value > 0 (1/m)");
   require(options.distance_scale > 0.0f && std::isfinite(options.distance_scale), "distance_scale",
           options.distance_scale, "a finite value > 0 (1/px)");
-  require(options.epsilon > 0.0f && std::isfinite(options.epsilon), "epsilon", options.epsilon,
-          "a finite value > 0");
+  // Beyond, squares and higher powers leave the range of float.
+  require(options.epsilon >= 1e-15f && options.epsilon <= 1e15f, "epsilon", options.epsilon,
+          "a value in [1e-15, 1e15]");
   require(options.min_points >= 1, "min_points", static_cast<float>(options.min_points),
           "a count >= 1");
-  require(options.order >= 1.0f, "order", options.order, "a value >= 1, or infinity");
+  require((options.order >= 1.0f && options.order <= 100.0f) ||
+              (std::isinf(options.order) && options.order > 0.0f),
+          "order", options.order, "a value in [1, 100], or infinity");
 }
 
 /// Clusters of N points.
@@ -157,11 +160,15 @@ inline Clustering clusterSorted(const Eigen::MatrixXf& points, const MinkowskiBa
 /// lexicographically smallest core point. So labels do not depend on the order of the points.
 ///
 /// @param points D-by-N, a point a column.
-/// @throws std::invalid_argument when an option is out of range.
+/// @throws std::invalid_argument when an option is out of range, or points have no coordinates.
 inline Clustering densityClusters(const Eigen::Ref<const Eigen::MatrixXf>& points,
                                   const ClusteringOptions& options = {}) {
   checkOptions(options);
   const auto n = static_cast<std::size_t>(points.cols());
+  if (points.rows() == 0 && n > 0) {
+    throw std::invalid_argument("densityClusters: " + std::to_string(n) +
+                                " points of 0 coordinates; expected at least 1");
+  }
   std::vector<Eigen::Index> order;
   order.reserve(n);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {

@@ -39,7 +39,9 @@ struct DynamicFeatureFilterOptions {
 /// back shows slow motion, too.
 struct EarlierFrame {
   const FlowPyramid* pyramid = nullptr;  ///< Of its gray image; not null.
-  cv::Mat depth;  ///< Depths (m, CV_32FC1, 0 or NaN = none); needed for the ego-motion distance.
+  /// Depths (m, CV_32FC1, 0 or NaN = none), of the image's size; needed for the ego-motion
+  /// distance.
+  cv::Mat depth;
   /// Motion of the camera since then, as far as it is known; needed for the ego-motion distance.
   std::optional<Eigen::Isometry3d> current_from_earlier;
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -71,7 +72,11 @@ inline std::vector<float> egoMotionDistances(
     const double dd = hasDepth(current_depth[i])
                           ? options.baseline_fx * (1.0 / expected.z() - 1.0 / current_depth[i])
                           : 0.0;
-    reuse[i] = static_cast<float>(std::sqrt(du * du + dv * dv + dd * dd));
+    const double distance = std::sqrt(du * du + dv * dv + dd * dd);
+    if (distance <=
+        static_cast<double>(std::numeric_limits<float>::max())) {  // not NaN or infinite
+      reuse[i] = static_cast<float>(distance);
+    }
   }
   return reuse;
 }

@@ -101,9 +101,11 @@ struct FrameDecision {
 };
 
 struct FilterStageResult {
-  std::vector<PointLabel> label;   ///< N verdicts.
-  std::vector<float> weight;       ///< N weights, eq. 7, in [0, 1].
-  std::vector<int> cluster;        ///< N frame-wide cluster numbers; kNoise = in none.
+  std::vector<PointLabel> label;  ///< N verdicts.
+  std::vector<float> weight;      ///< N weights, eq. 7, in [0, 1].
+  /// N frame-wide cluster numbers; kNoise = in none. A point in several dynamic boxes has the
+  /// number from the first that finds it dynamic, else from the first that has it in a cluster.
+  std::vector<int> cluster;
   std::vector<BoxDecision> boxes;  ///< One a detection box.
   FrameDecision frame;
 };
@@ -190,7 +192,6 @@ inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<co
 
   for (std::size_t k = 0; k < members.size(); ++k) {
     const std::uint32_t i = members[k];
-    const bool first_box = workspace.in_dynamic_box[i] == 0;
     workspace.in_dynamic_box[i] = 1;
     const PointLabel before = result.label[i];
     PointLabel label = std::isnan(distance[i]) ? PointLabel::kUnmatched : PointLabel::kSuspect;
@@ -204,7 +205,8 @@ inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<co
       result.label[i] = label;
     }
     if (clustering.label[k] != kNoise &&
-        (first_box || (label == PointLabel::kDynamic && before != PointLabel::kDynamic))) {
+        (result.cluster[i] == kNoise ||
+         (label == PointLabel::kDynamic && before != PointLabel::kDynamic))) {
       result.cluster[i] = decision.first_cluster + clustering.label[k];
     }
   }
@@ -268,6 +270,9 @@ inline const FilterStageResult& filterKeyPoints(const KeyPointsView& points,
   checkOptions(options.clustering);
   checkOptions(options.cluster_filter);
   checkOptions(options.weights);
+  checkOptions(options.two_threshold);
+  checkOptions(options.chi_square);
+  checkOptions(options.depth_ransac);
 
   FilterStageResult& result = workspace.result;
   result.label.assign(points.size(), PointLabel::kStatic);

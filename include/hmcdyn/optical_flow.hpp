@@ -24,7 +24,7 @@ struct OpticalFlowOptions {
 /// The pyramid that both ends of a match need; keep the current frame's for the next call.
 using FlowPyramid = std::vector<cv::Mat>;
 
-/// @param gray 8-bit, one channel.
+/// @param gray 8-bit, one channel; copied.
 /// @throws std::invalid_argument for an empty image or one of another type, or a bad option.
 FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& options = {});
 
@@ -37,9 +37,9 @@ struct FlowMatches {
 
 /// Tracks the current frame's key points back into the earlier frame, and forth again as a check,
 /// so that every key point of the current frame gets its own match. Key points outside the image or
-/// not finite are lost, not an error.
+/// not finite are lost, not an error; so are those whose match would lie outside the earlier image.
 /// @throws std::invalid_argument for an empty pyramid, pyramids of different image sizes, unequal
-/// arrays, or a bad option.
+/// arrays, a window larger than a pyramid was built for, or another bad option.
 FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid& earlier,
                                   const KeyPointsView& points,
                                   const OpticalFlowOptions& options = {});

@@ -15,6 +15,17 @@
 
 namespace hmcdyn {
 
+namespace detail {
+
+inline void requireOption(bool good, const char* name, float value, const char* expected) {
+  if (!good) {
+    throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + "; expected " +
+                                expected);
+  }
+}
+
+}  // namespace detail
+
 /// Two thresholds, a tighter one inside people's boxes (SG-SLAM: Cheng, Sun, Zhang, Zhang,
 /// "SG-SLAM: a real-time RGB-D visual SLAM toward dynamic scenes with semantic and geometric
 /// information", IEEE TIM 2023; values as in its published configuration).
@@ -42,9 +53,41 @@ struct DepthRansacOptions {
   std::uint32_t seed = 1;            ///< Of the draws.
 };
 
+/// @throws std::invalid_argument naming the first option out of range.
+inline void checkOptions(const TwoThresholdOptions& options) {
+  detail::requireOption(options.outside_threshold >= 0.0f, "TwoThresholdOptions::outside_threshold",
+                        options.outside_threshold, "a value >= 0 (px)");
+  detail::requireOption(options.inside_threshold >= 0.0f, "TwoThresholdOptions::inside_threshold",
+                        options.inside_threshold, "a value >= 0 (px)");
+  detail::requireOption(options.revert_share >= 0.0f && options.revert_share <= 1.0f,
+                        "TwoThresholdOptions::revert_share", options.revert_share,
+                        "a share in [0, 1]");
+}
+
+/// @throws std::invalid_argument naming the first option out of range.
+inline void checkOptions(const ChiSquareOptions& options) {
+  detail::requireOption(options.sigma > 0.0f, "ChiSquareOptions::sigma", options.sigma,
+                        "a value > 0 (px)");
+  detail::requireOption(options.quantile >= 0.0f, "ChiSquareOptions::quantile", options.quantile,
+                        "a value >= 0");
+}
+
+/// @throws std::invalid_argument naming the first option out of range.
+inline void checkOptions(const DepthRansacOptions& options) {
+  detail::requireOption(options.variance_threshold > 0.0f, "DepthRansacOptions::variance_threshold",
+                        options.variance_threshold, "a value > 0 (m^2)");
+  detail::requireOption(options.confidence > 0.0f && options.confidence < 1.0f,
+                        "DepthRansacOptions::confidence", options.confidence,
+                        "a probability in (0, 1)");
+  detail::requireOption(options.max_iterations >= 1, "DepthRansacOptions::max_iterations",
+                        static_cast<float>(options.max_iterations), "a count >= 1");
+}
+
 /// Flags (1 = dynamic): every point of every box (the paper's RS ablation).
+/// @throws std::invalid_argument when a box holds a point beyond `points`.
 inline std::vector<std::uint8_t> dropWholeBoxes(std::size_t points,
                                                 const BoxMembership& membership) {
+  detail::checkMembership("dropWholeBoxes", membership, points);
   std::vector<std::uint8_t> dynamic(points, 0);
   for (const std::uint32_t i : membership.indices) {
     dynamic[i] = 1;
@@ -53,9 +96,18 @@ inline std::vector<std::uint8_t> dropWholeBoxes(std::size_t points,
 }
 
 /// Flags: points of dynamic boxes beyond their own threshold (the paper's DF ablation).
+/// @throws std::invalid_argument when sizes differ.
 inline std::vector<std::uint8_t> dropBeyondThreshold(Span<const float> distance,
                                                      const BoxMembership& membership,
                                                      const BoxDynamism& dynamism) {
+  if (dynamism.boxes.size() != membership.boxes() || dynamism.threshold.size() != distance.size()) {
+    throw std::invalid_argument("dropBeyondThreshold: " + std::to_string(distance.size()) +
+                                " distances in " + std::to_string(membership.boxes()) +
+                                " boxes, but dynamism of " +
+                                std::to_string(dynamism.threshold.size()) + " points in " +
+                                std::to_string(dynamism.boxes.size()) + " boxes");
+  }
+  detail::checkMembership("dropBeyondThreshold", membership, distance.size());
   std::vector<std::uint8_t> dynamic(distance.size(), 0);
   for (std::size_t b = 0; b < membership.boxes(); ++b) {
     if (!dynamism.boxes[b].is_dynamic) {
@@ -71,11 +123,19 @@ inline std::vector<std::uint8_t> dropBeyondThreshold(Span<const float> distance,
 }
 
 /// Flags: TwoThresholdOptions' rule.
+/// @throws std::invalid_argument when sizes differ or an option is out of range.
 inline std::vector<std::uint8_t> dropByTwoThresholds(Span<const float> distance,
                                                      Span<const DetectionBox> boxes,
                                                      const BoxMembership& membership,
                                                      int person_class_id,
                                                      const TwoThresholdOptions& options = {}) {
+  checkOptions(options);
+  if (membership.boxes() != boxes.size()) {
+    throw std::invalid_argument("dropByTwoThresholds: membership of " +
+                                std::to_string(membership.boxes()) + " boxes for " +
+                                std::to_string(boxes.size()) + " boxes");
+  }
+  detail::checkMembership("dropByTwoThresholds", membership, distance.size());
   std::vector<std::uint8_t> in_person(distance.size(), 0);
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     if (boxes[b].class_id == person_class_id) {
@@ -99,14 +159,12 @@ inline std::vector<std::uint8_t> dropByTwoThresholds(Span<const float> distance,
 }
 
 /// Flags: points in boxes that fail ChiSquareOptions' test, d^2 / sigma^2 > quantile.
-/// @throws std::invalid_argument unless sigma > 0.
+/// @throws std::invalid_argument when sizes differ or an option is out of range.
 inline std::vector<std::uint8_t> dropByChiSquare(Span<const float> distance,
                                                  const BoxMembership& membership,
                                                  const ChiSquareOptions& options = {}) {
-  if (!(options.sigma > 0.0f)) {
-    throw std::invalid_argument("ChiSquareOptions::sigma is " + std::to_string(options.sigma) +
-                                "; expected a value > 0 (px)");
-  }
+  checkOptions(options);
+  detail::checkMembership("dropByChiSquare", membership, distance.size());
   std::vector<std::uint8_t> dynamic(distance.size(), 0);
   for (const std::uint32_t i : membership.indices) {
     const float normalized = distance[i] / options.sigma;
@@ -155,16 +213,12 @@ inline std::vector<std::size_t> depthConsensus(const std::vector<float>& depth,
 
 /// Flags: in every box, the largest set of points of like depth (DepthRansacOptions). Points
 /// without depth are kept.
-/// @throws std::invalid_argument unless 0 < confidence < 1 and max_iterations >= 1.
+/// @throws std::invalid_argument when sizes differ or an option is out of range.
 inline std::vector<std::uint8_t> dropByDepthRansac(Span<const float> depth,
                                                    const BoxMembership& membership,
                                                    const DepthRansacOptions& options = {}) {
-  if (!(options.confidence > 0.0f && options.confidence < 1.0f) || options.max_iterations < 1) {
-    throw std::invalid_argument("DepthRansacOptions: confidence is " +
-                                std::to_string(options.confidence) + ", max_iterations " +
-                                std::to_string(options.max_iterations) +
-                                "; expected a share in (0, 1) and a count >= 1");
-  }
+  checkOptions(options);
+  detail::checkMembership("dropByDepthRansac", membership, depth.size());
   std::mt19937 random(options.seed);
   std::vector<std::uint8_t> dynamic(depth.size(), 0);
   for (std::size_t b = 0; b < membership.boxes(); ++b) {

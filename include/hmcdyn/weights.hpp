@@ -31,26 +31,27 @@ inline void checkOptions(const WeightOptions& options) {
 
 /// Depths of one dynamic box, as eq. 8 needs them.
 struct DepthAnchor {
-  float depth = kNaN;  ///< d_maxaver: mean depth of the strongest dynamic cluster (m); NaN = none.
+  /// d_maxaver: mean depth of the strongest dynamic cluster (m); not finite = none.
+  float depth = kNaN;
   float sigma = 0.0f;  ///< Standard deviation of all depths in the box (m).
 };
 
 /// G of eq. 8: exp(-(z - z_max)^2 / (2 sigma^2)); its limit for sigma = 0 (1 at the anchor's depth,
-/// 0 elsewhere).
+/// 0 elsewhere). The depths must be finite.
 inline float depthSimilarity(float depth, const DepthAnchor& anchor) noexcept {
-  const float difference = depth - anchor.depth;
-  if (anchor.sigma <= 0.0f) {
-    return difference == 0.0f ? 1.0f : 0.0f;
+  const double difference = static_cast<double>(depth) - static_cast<double>(anchor.depth);
+  if (!(anchor.sigma > 0.0f)) {
+    return difference == 0.0 ? 1.0f : 0.0f;
   }
-  const float ratio = difference / anchor.sigma;
-  return std::exp(-0.5f * ratio * ratio);  // eq. 8
+  const double ratio = difference / static_cast<double>(anchor.sigma);
+  return static_cast<float>(std::exp(-0.5 * ratio * ratio));  // eq. 8
 }
 
 /// lambda of eq. 7 for a point that was kept in a dynamic box, in [0, 1], never NaN.
 /// @param depth of the point (m); 0, negative or NaN = none.
 inline float keptPointWeight(float depth, const DepthAnchor& anchor,
                              const WeightOptions& options = {}) noexcept {
-  if (std::isnan(anchor.depth)) {
+  if (!std::isfinite(anchor.depth)) {
     return options.without_anchor;
   }
   if (!hasDepth(depth)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,15 +15,19 @@ namespace hmcdyn::detail {
 class MinkowskiBall {
  public:
   MinkowskiBall(float order, float radius)
-      : order_(order),
-        radius_(radius),
-        power_(std::isinf(order) || order == 1.0f ? radius : std::pow(radius, order)) {
-    if (order == 2.0f) {
+      : order_(order), radius_(radius), scale_(std::ldexp(1.0f, -std::ilogb(radius))) {
+    if (std::isinf(order) || order == 1.0f) {
+      power_ = radius;
+    } else if (order == 2.0f) {
       power_ = radius * radius;
+    } else {
+      power_ = std::pow(scale_ * radius, order);
     }
   }
 
-  /// sum |x - y|^p, eq. 6 without the root; max |x - y| for p = infinity.
+  /// sum |x - y|^p, eq. 6 without the root; max |x - y| for p = infinity. For p other than 1, 2 and
+  /// infinity in units in which the radius lies in [1, 2), so that no power of it leaves float's
+  /// range; a power of two, so that exact differences stay exact.
   float power(const float* x, const float* y, Eigen::Index dimensions) const {
     float sum = 0.0f;
     for (Eigen::Index k = 0; k < dimensions; ++k) {
@@ -34,7 +39,7 @@ class MinkowskiBall {
       } else if (std::isinf(order_)) {
         sum = std::max(sum, difference);
       } else {
-        sum += std::pow(difference, order_);
+        sum += std::pow(scale_ * difference, order_);
       }
     }
     return sum;
@@ -56,7 +61,8 @@ class MinkowskiBall {
  private:
   float order_;
   float radius_;
-  float power_;
+  float scale_;
+  float power_ = 0.0f;
 };
 
 }  // namespace hmcdyn::detail

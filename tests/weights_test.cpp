@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hmcdyn/weights.hpp>
+
+#include "invalid_argument.hpp"
+#include "random.hpp"
+
+namespace hmcdyn {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+WeightOptions options() {
+  WeightOptions result;
+  result.without_depth = 0.25f;
+  result.without_anchor = 0.75f;
+  return result;
+}
+
+TEST(Weights, FollowTheGaussian) {
+  // Given an anchor at 2 m with a deviation of 0.5 m, eq. 7-8 at 0, 1, 2 and 3 deviations.
+  const DepthAnchor anchor{2.0f, 0.5f};
+  EXPECT_FLOAT_EQ(keptPointWeight(2.0f, anchor, options()), 0.0f);
+  EXPECT_NEAR(keptPointWeight(2.5f, anchor, options()), 1.0 - std::exp(-0.5), 1e-6);
+  EXPECT_NEAR(keptPointWeight(1.5f, anchor, options()), 0.3934693, 1e-6);
+  EXPECT_NEAR(keptPointWeight(3.0f, anchor, options()), 1.0 - std::exp(-2.0), 1e-6);
+  EXPECT_NEAR(keptPointWeight(3.5f, anchor, options()), 0.9888910, 1e-6);
+  EXPECT_NEAR(depthSimilarity(2.5f, anchor), 0.6065307, 1e-6);
+}
+
+TEST(Weights, GrowWithTheDistanceFromTheAnchor) {
+  test::Random random(5);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const DepthAnchor anchor{random.uniformFloat(0.5, 8.0), random.uniformFloat(0.0, 2.0)};
+    float near = random.uniformFloat(0.1, 10.0);
+    float far = random.uniformFloat(0.1, 10.0);
+    if (std::abs(near - anchor.depth) > std::abs(far - anchor.depth)) {
+      std::swap(near, far);
+    }
+    EXPECT_LE(keptPointWeight(near, anchor, options()), keptPointWeight(far, anchor, options()))
+        << near << " m and " << far << " m from " << anchor.depth << " m, " << anchor.sigma;
+  }
+}
+
+TEST(Weights, WithoutDeviationTakeTheLimit) {
+  const DepthAnchor anchor{2.0f, 0.0f};
+  EXPECT_EQ(keptPointWeight(2.0f, anchor, options()), 0.0f);
+  EXPECT_EQ(keptPointWeight(2.001f, anchor, options()), 1.0f);
+}
+
+TEST(Weights, WithoutAnAnchorAreTheOptions) {
+  EXPECT_EQ(keptPointWeight(2.0f, DepthAnchor{}, options()), 0.75f);
+  EXPECT_EQ(keptPointWeight(0.0f, DepthAnchor{kNaN, 1.0f}, options()), 0.75f);
+}
+
+TEST(Weights, WithoutDepthAreTheOptions) {
+  for (const float none : {0.0f, -1.0f, kNaN, kInfinity}) {
+    EXPECT_EQ(keptPointWeight(none, DepthAnchor{2.0f, 0.5f}, options()), 0.25f) << none;
+  }
+}
+
+TEST(Weights, AreWithinZeroAndOneForEveryInput) {
+  const std::vector<float> special{0.0f,  -0.0f,   1.0f,     -1.0f,     1e-45f,     1e-38f, 1e-20f,
+                                   1e20f, 3.4e38f, -3.4e38f, kInfinity, -kInfinity, kNaN};
+  for (const float depth : special) {
+    for (const float anchor : special) {
+      for (const float sigma : special) {
+        const float weight = keptPointWeight(depth, {anchor, sigma}, options());
+        EXPECT_TRUE(weight >= 0.0f && weight <= 1.0f)
+            << weight << " at " << depth << " m, anchor " << anchor << " m, sigma " << sigma;
+      }
+    }
+  }
+}
+
+TEST(Weights, OptionsOutOfRangeAreNamed) {
+  const auto message = [](float without_depth, float without_anchor) {
+    WeightOptions changed;
+    changed.without_depth = without_depth;
+    changed.without_anchor = without_anchor;
+    return test::invalidArgumentOf([&] { checkOptions(changed); });
+  };
+  EXPECT_EQ(message(-0.1f, 0.5f),
+            "WeightOptions::without_depth is -0.100000; expected a weight in [0, 1]");
+  EXPECT_EQ(message(0.5f, kNaN),
+            "WeightOptions::without_anchor is nan; expected a weight in [0, 1]");
+  EXPECT_EQ(message(0.0f, 1.0f), "nothing thrown");
+}
+
+}  // namespace
+}  // namespace hmcdyn
