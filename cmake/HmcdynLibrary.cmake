@@ -18,7 +18,7 @@ set(HMCDYN_CORE_HEADERS
     detail/kd_tree.hpp
     detail/minkowski.hpp)
 set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp dynamic_feature_filter.hpp)
-set(HMCDYN_OPTIMIZATION_HEADERS)
+set(HMCDYN_OPTIMIZATION_HEADERS pose_refinement.hpp)
 
 add_library(hmcdyn_core INTERFACE)
 target_include_directories(hmcdyn_core INTERFACE "$<BUILD_INTERFACE:${HMCDYN_INCLUDE_DIR}>")
@@ -33,3 +33,14 @@ target_link_libraries(
   PUBLIC hmcdyn_core opencv_core
   PRIVATE opencv_imgproc opencv_video opencv_calib3d hmcdyn_warnings)
 add_library(hmcdyn::vision ALIAS hmcdyn_vision)
+
+add_library(hmcdyn_optimization src/pose_refinement.cpp src/pose_refinement_input.cpp
+                                src/pose_refinement_solver.cpp)
+target_link_libraries(hmcdyn_optimization PUBLIC hmcdyn::core
+                                          PRIVATE ${CERES_LIBRARIES} hmcdyn_warnings)
+add_library(hmcdyn::optimization ALIAS hmcdyn_optimization)
+
+# The whole library; hmcdyn.hpp includes all of it.
+add_library(hmcdyn INTERFACE)
+target_link_libraries(hmcdyn INTERFACE hmcdyn_core hmcdyn_vision hmcdyn_optimization)
+add_library(hmcdyn::hmcdyn ALIAS hmcdyn)

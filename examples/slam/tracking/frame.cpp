@@ -2,33 +2,31 @@
 #include "slam/tracking/frame.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 namespace hmcdyn::slam {
 namespace {
 
-/// Median of the neighbours' depths where at least three agree within 5 % of it; else 0.
+/// Median of the neighbours' depths where there are three or more, within 5 % of it; else 0.
 float depthFromNeighbours(const cv::Mat& depth, int column, int row) {
-  std::array<float, 8> found{};
-  std::size_t count = 0;
+  std::vector<float> found;
   for (int dv = -1; dv <= 1; ++dv) {
     for (int du = -1; du <= 1; ++du) {
       const int u = column + du;
       const int v = row + dv;
       if ((du != 0 || dv != 0) && u >= 0 && v >= 0 && u < depth.cols && v < depth.rows &&
           hasDepth(depth.at<float>(v, u))) {
-        found[count++] = depth.at<float>(v, u);
+        found.push_back(depth.at<float>(v, u));
       }
     }
   }
-  if (count < 3) {
+  if (found.size() < 3) {
     return 0.0f;
   }
-  std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
-  const float median = found[count / 2];
-  const bool agree = found[count - 1] - found[0] <= 0.05f * median;
+  std::sort(found.begin(), found.end());
+  const float median = found[found.size() / 2];
+  const bool agree = found.back() - found.front() <= 0.05f * median;
   return agree ? median : 0.0f;
 }
 
