@@ -114,11 +114,8 @@ TEST_P(MotionModelSeeds, AStillCameraMeasuresDisplacement) {
       scene.moveCurrent(i, {3.0, -4.0});
     }
   }
-  const MotionModelOptions options = [] {
-    MotionModelOptions with = fixedOptions();
-    with.still_displacement = 1.0f;  // noise of both frames, 5 deviations
-    return with;
-  }();
+  MotionModelOptions options = fixedOptions();
+  options.still_displacement = 1.0f;  // noise of both frames, 5 deviations
   const MotionModelEstimate found = estimate(scene, {box}, options);
   EXPECT_EQ(found.verdict, FundamentalVerdict::kCameraStill);
   EXPECT_EQ(found.model.kind, TwoViewModelKind::kIdentity);
