@@ -45,7 +45,7 @@ void addLamps(Scene& scene, const RoomBounds& bounds) {
   const auto z = static_cast<float>(bounds.max().z()) - 0.15f;
   for (const float x : {-1.8f, 1.8f}) {
     for (const float y : {-1.6f, 1.6f}) {
-      scene.lighting.lamps.push_back({{middle.x() + x, middle.y() + y, z}, 0.85f});
+      scene.lighting.lamps.push_back({{middle.x() + x, middle.y() + y, z}, 1.25f});
     }
   }
 }
@@ -77,19 +77,19 @@ void hangPosters(Furnisher& f, const Palette& palette) {
   const Vector3f from_left(1, 0, 0);
   const Vector3f from_right(-1, 0, 0);
   const Vector3f from_front(0, 1, 0);
-  f.onWall({-2.75f, 4.2f, 1.75f}, from_back, 0.6f, 0.85f, p[0]);
-  f.onWall({-2.0f, 4.2f, 1.72f}, from_back, 0.59f, 0.84f, p[3]);
-  f.onWall({0.1f, 4.2f, 2.3f}, from_back, 0.42f, 0.6f, p[1]);
-  f.onWall({2.9f, 4.2f, 1.7f}, from_back, 0.9f, 0.64f, p[2]);
-  f.onWall({2.85f, 4.2f, 2.35f}, from_back, 0.5f, 0.37f, p[5]);
-  f.onWall({4.0f, 2.9f, 1.65f}, from_right, 0.59f, 0.84f, p[6]);
-  f.onWall({4.0f, 2.15f, 1.75f}, from_right, 0.42f, 0.6f, p[4]);
-  f.onWall({4.0f, 1.3f, 1.7f}, from_right, 1.0f, 0.7f, p[8]);
+  f.onWall({-2.75f, 2.7f, 1.75f}, from_back, 0.6f, 0.85f, p[0]);
+  f.onWall({-2.0f, 2.7f, 1.72f}, from_back, 0.59f, 0.84f, p[3]);
+  f.onWall({0.1f, 2.7f, 2.3f}, from_back, 0.42f, 0.6f, p[1]);
+  f.onWall({2.9f, 2.7f, 1.7f}, from_back, 0.9f, 0.64f, p[2]);
+  f.onWall({2.85f, 2.7f, 2.35f}, from_back, 0.5f, 0.37f, p[5]);
+  f.onWall({4.0f, 2.25f, 1.65f}, from_right, 0.59f, 0.84f, p[6]);
+  f.onWall({4.0f, 1.55f, 1.75f}, from_right, 0.42f, 0.6f, p[4]);
+  f.onWall({4.0f, 0.55f, 1.85f}, from_right, 1.0f, 0.7f, p[8]);
   f.onWall({4.0f, -0.2f, 1.7f}, from_right, 0.42f, 0.6f, p[12]);
   f.onWall({4.0f, -1.6f, 1.6f}, from_right, 0.59f, 0.84f, p[9]);
   f.onWall({-4.0f, -0.6f, 1.65f}, from_left, 0.59f, 0.84f, p[10]);
   f.onWall({-4.0f, -1.6f, 1.7f}, from_left, 0.5f, 0.7f, p[7]);
-  f.onWall({-4.0f, 3.5f, 1.6f}, from_left, 0.42f, 0.6f, p[11]);
+  f.onWall({-4.0f, 0.3f, 1.6f}, from_left, 0.42f, 0.6f, p[11]);
   f.onWall({-1.2f, -3.8f, 1.6f}, from_front, 0.9f, 0.64f, p[2]);
   f.onWall({1.2f, -3.8f, 1.6f}, from_front, 0.6f, 0.85f, p[9]);
 }
@@ -128,18 +128,18 @@ void addOccluders(Furnisher& f) {
 
 void furnishWalls(Furnisher& f, const Palette& palette, TextureLibrary& textures,
                   std::uint64_t seed) {
-  f.bookcase(placed(-1.05f, 4.03f, 0), 0.95f, 2.1f);
-  f.bookcase(placed(-0.05f, 4.03f, 0), 0.95f, 1.85f);
+  f.bookcase(placed(-1.05f, 2.53f, 0), 0.95f, 2.1f);
+  f.bookcase(placed(-0.05f, 2.53f, 0), 0.95f, 1.85f);
   f.bookcase(placed(3.83f, 0.3f, 0, -1.5708f), 1.1f, 1.4f);
-  f.cabinet(placed(2.6f, 3.95f, 0), 1.0f, 1.15f);
+  f.cabinet(placed(2.6f, 2.45f, 0), 1.0f, 1.15f);
   f.cabinet(placed(-3.75f, 0.9f, 0, 1.5708f), 1.2f, 0.85f);
   const int whiteboard = textures.add([s = mixBits(seed + 21)] { return paint::whiteboard(s); });
   const int door = textures.add([s = mixBits(seed + 22)] { return paint::door(s); });
   const int window = textures.add([s = mixBits(seed + 23)] { return paint::windowView(s); });
   const int clock = textures.add([] { return paint::clockFace(); });
-  f.onWall({1.35f, 4.2f, 1.55f}, {0, -1, 0}, 1.5f, 1.0f, whiteboard, 0.03f);
-  f.onWall({1.35f, 4.2f, 2.4f}, {0, -1, 0}, 0.3f, 0.3f, clock, 0.03f);
-  f.onWall({-3.45f, 4.2f, 1.02f}, {0, -1, 0}, 0.92f, 2.04f, door, 0.04f);
+  f.onWall({1.35f, 2.7f, 1.55f}, {0, -1, 0}, 1.5f, 1.0f, whiteboard, 0.03f);
+  f.onWall({1.35f, 2.7f, 2.4f}, {0, -1, 0}, 0.3f, 0.3f, clock, 0.03f);
+  f.onWall({-3.45f, 2.7f, 1.02f}, {0, -1, 0}, 0.92f, 2.04f, door, 0.04f);
   f.onWall({-4.0f, 1.7f, 1.65f}, {1, 0, 0}, 1.5f, 1.25f, window, 0.02f, 1.3f);
   for (const float y : {0.93f, 1.7f, 2.47f}) {  // window frame
     Mesh frame;
@@ -147,16 +147,16 @@ void furnishWalls(Furnisher& f, const Palette& palette, TextureLibrary& textures
            BoxMaterials::all({palette.white_plastic, 0.3f, {0, 0}, {1, 1}}));
     f.add(std::move(frame));
   }
-  f.plant(placed(-3.3f, 2.9f, 0), 1.5f);
-  f.plant(placed(3.4f, 3.3f, 0), 1.2f);
-  f.cardboardBox(placed(2.55f, 3.9f, 1.15f, 0.2f), {0.4f, 0.3f, 0.28f});
-  f.cardboardBox(placed(3.2f, 2.2f, 0, 0.4f), {0.5f, 0.4f, 0.36f});
-  f.cardboardBox(placed(3.15f, 2.25f, 0.36f, 0.1f), {0.38f, 0.32f, 0.26f});
+  f.plant(placed(-3.35f, 2.15f, 0), 1.5f);
+  f.plant(placed(3.5f, 2.2f, 0), 1.2f);
+  f.cardboardBox(placed(2.55f, 2.4f, 1.15f, 0.2f), {0.4f, 0.3f, 0.28f});
+  f.cardboardBox(placed(3.45f, 1.45f, 0, 0.4f), {0.5f, 0.4f, 0.36f});
+  f.cardboardBox(placed(3.42f, 1.47f, 0.36f, 0.1f), {0.38f, 0.32f, 0.26f});
   f.bookPile(placed(-3.7f, 0.7f, 0.85f, 1.3f), 5);
   f.penCup(placed(-3.7f, 1.2f, 0.85f));
   f.backpack(placed(1.95f, -0.1f, 0, -0.4f), true);
-  f.backpack(placed(-2.4f, 3.6f, 0, 0.6f), false);
-  f.officeChair(placed(1.7f, 2.3f, 0, 0.5f), false);
+  f.backpack(placed(-2.4f, 2.35f, 0, 0.6f), false);
+  f.officeChair(placed(1.75f, 2.1f, 0, 0.5f), false);
   f.stepLadder(placed(3.3f, -1.0f, 0, 1.2f), 1.4f);
   f.cable({{-1.6f, 0.8f, 0.01f}, {-2.2f, 0.5f, 0.01f}, {-2.5f, 1.2f, 0.01f}, {-3.2f, 1.4f, 0.01f},
            {-3.95f, 2.0f, 0.01f}}, 0.008f);
@@ -165,7 +165,7 @@ void furnishWalls(Furnisher& f, const Palette& palette, TextureLibrary& textures
 }  // namespace
 
 RoomBounds furnishOffice(Scene& scene, std::uint64_t seed, bool with_occluders) {
-  const RoomBounds bounds(Eigen::Vector3d(-4.0, -3.8, 0.0), Eigen::Vector3d(4.0, 4.2, 2.85));
+  const RoomBounds bounds(Eigen::Vector3d(-4.0, -3.8, 0.0), Eigen::Vector3d(4.0, 2.7, 2.85));
   const Palette palette(scene.textures, seed);
   addLamps(scene, bounds);
   Furnisher f(scene.room, scene.lighting, palette, seed);
@@ -188,7 +188,7 @@ RoomBounds furnishOffice(Scene& scene, std::uint64_t seed, bool with_occluders) 
 }
 
 RoomBounds furnishBareOffice(Scene& scene, std::uint64_t seed) {
-  const RoomBounds bounds(Eigen::Vector3d(-4.0, -3.8, 0.0), Eigen::Vector3d(4.0, 4.2, 2.85));
+  const RoomBounds bounds(Eigen::Vector3d(-4.0, -3.8, 0.0), Eigen::Vector3d(4.0, 2.7, 2.85));
   const Palette palette(scene.textures, seed);
   addLamps(scene, bounds);
   Furnisher f(scene.room, scene.lighting, palette, seed);
@@ -208,9 +208,9 @@ RoomBounds furnishBareOffice(Scene& scene, std::uint64_t seed) {
   f.paper(placed(0.85f, 0.3f, 0.74f, 0.3f));
   f.bookPile(placed(1.2f, 0.5f, 0.74f), 2);
   f.woodenChair(placed(0.75f, -0.62f, 0, 3.25f));
-  f.cabinet(placed(2.6f, 3.95f, 0), 1.0f, 1.15f);
-  f.onWall({-1.9f, 4.2f, 1.7f}, {0, -1, 0}, 0.42f, 0.6f, palette.posters[1]);
-  f.onWall({-3.45f, 4.2f, 1.02f}, {0, -1, 0}, 0.92f, 2.04f, palette.light_wood, 0.04f);
+  f.cabinet(placed(2.6f, 2.45f, 0), 1.0f, 1.15f);
+  f.onWall({-1.9f, 2.7f, 1.7f}, {0, -1, 0}, 0.42f, 0.6f, palette.posters[1]);
+  f.onWall({-3.45f, 2.7f, 1.02f}, {0, -1, 0}, 0.92f, 2.04f, palette.light_wood, 0.04f);
   return bounds;
 }
 

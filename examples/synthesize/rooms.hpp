@@ -12,7 +12,7 @@ namespace hmcdyn::synthesize {
 /// The inside of a room (m): where a camera or a person can be.
 using RoomBounds = Eigen::AlignedBox3d;
 
-/// An office, 8 m by 8 m: two rows of desks in the middle with a partition behind them, as in the
+/// An office, 8 m by 6.5 m: a row of desks in the middle with a partition behind them, as in the
 /// TUM fr3 sequences; shelves, window, whiteboard and posters at the walls. The middle of the front
 /// desks' edge is near (0, 0); the usual camera stands at (0, -2.5) and looks along +y.
 /// @param with_occluders boxes, a plant and a broom between that camera and the desks.
@@ -21,7 +21,7 @@ RoomBounds furnishOffice(Scene& scene, std::uint64_t seed, bool with_occluders =
 /// The same with blank walls, a plain floor and almost nothing on the desks.
 RoomBounds furnishBareOffice(Scene& scene, std::uint64_t seed);
 
-/// A hall for motion capture, 9 m by 9 m, with free floor in the middle, things along the walls,
+/// A hall for motion capture, 7.2 m by 6.4 m, with free floor in the middle, things along the walls,
 /// and the broom, cardboard boxes and chair of the paper's own recordings.
 RoomBounds furnishHall(Scene& scene, std::uint64_t seed);
 

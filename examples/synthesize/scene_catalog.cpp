@@ -56,8 +56,8 @@ Eigen::Isometry3d hallView() { return lookAt(kHallEye, kHallTarget); }
 Behaviour aroundDesks(double lane, double speed) {
   Behaviour b;
   b.start = {-1.5, lane};
-  b.actions = {walkTo(2.4, lane, speed),  walkTo(2.6, 0.9, speed),   walkTo(1.9, 1.45, speed),
-               walkTo(-2.0, 1.45, speed), walkTo(-2.75, 0.6, speed), walkTo(-2.5, lane, speed)};
+  b.actions = {walkTo(2.4, lane, speed),  walkTo(2.6, 0.9, speed),   walkTo(1.9, 1.35, speed),
+               walkTo(-2.0, 1.35, speed), walkTo(-2.75, 0.6, speed), walkTo(-2.5, lane, speed)};
   return b;
 }
 
@@ -276,7 +276,7 @@ void addHardRecipes(std::vector<Recipe>& r) {
                [](Stage& s) {
                  s.office(true);
                  s.person(paces(-1.6, 1.6, -0.85, 0.8, 0.6, 0.8));
-                 Behaviour back = paces(1.2, -1.5, 1.45, 0.9, 0.5, 0.0);
+                 Behaviour back = paces(1.2, -1.5, 1.35, 0.9, 0.5, 0.0);
                  s.person(back);
                  s.carried(axesPath(officeView(), 0.22, 5.0));
                }});
