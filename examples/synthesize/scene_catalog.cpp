@@ -126,7 +126,7 @@ void crowdOf(Stage& stage, int people, double nearest, double gap) {
   for (int i = 0; i < people; ++i) {
     Random random(stage.options.seed * 77 + static_cast<std::uint64_t>(people), 100 + static_cast<std::uint64_t>(i));
     const double lane = nearest + gap * i;
-    const double reach = random.uniform(0.8, 1.3) + 0.1 * i;
+    const double reach = random.uniform(0.5, 0.8) + 0.1 * i;
     const double speed = random.uniform(0.6, 1.15);
     Behaviour b = i % 2 == 0 ? paces(-reach, reach, lane, speed, random.uniform(0.3, 1.0), 1.0)
                              : paces(reach, -reach, lane, speed, random.uniform(0.3, 1.0), 0.6);
@@ -199,19 +199,19 @@ void addHallRecipes(std::vector<Recipe>& r) {
   r.push_back({{"crowd", "hall, six people walk to and fro close to the camera"},
                [reach](Stage& s) {
                  s.hall();
-                 crowdOf(s, 6, -1.1, 0.42);
+                 crowdOf(s, 6, -1.5, 0.36);
                  s.carried(strollPath(kHallEye, reach, kHallTarget, 11.0));
                }});
   r.push_back({{"crowd2", "hall, seven people, closer still, pausing and talking"},
                [reach](Stage& s) {
                  s.hall();
-                 crowdOf(s, 7, -1.3, 0.4);
+                 crowdOf(s, 7, -1.5, 0.36);
                  s.carried(strollPath(kHallEye, reach, kHallTarget, 13.0));
                }});
   r.push_back({{"crowd3", "hall, eight people in narrow lanes"},
                [reach](Stage& s) {
                  s.hall();
-                 crowdOf(s, 8, -1.2, 0.36);
+                 crowdOf(s, 8, -1.55, 0.33);
                  s.carried(strollPath(kHallEye, 0.8 * reach, kHallTarget, 9.0));
                }});
   r.push_back({{"synchronous2", "hall, two people walk side by side in step"},
