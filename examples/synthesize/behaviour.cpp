@@ -35,7 +35,8 @@ class Wander {
  public:
   Wander(Random& random, double frequency) {
     for (std::size_t i = 0; i < terms_.size(); ++i) {
-      terms_[i] = {2.0 * kPi * frequency * random.uniform(0.6, 1.6), random.uniform(0.0, 2.0 * kPi)};
+      terms_[i] = {2.0 * kPi * frequency * random.uniform(0.6, 1.6),
+                   random.uniform(0.0, 2.0 * kPi)};
     }
   }
   double at(double time) const {
@@ -113,9 +114,11 @@ class Player {
     heading_ += turn_rate_ * dt;
     speed_ = towards(speed_, wanted_speed, 1.4 * dt);
     position_ += speed_ * dt * Eigen::Vector2d(std::cos(heading_), std::sin(heading_));
-    const double stepping = std::clamp(std::max(speed_ / 0.4, std::abs(turn_rate_) / 1.2), 0.0, 1.0);
+    const double stepping =
+        std::clamp(std::max(speed_ / 0.4, std::abs(turn_rate_) / 1.2), 0.0, 1.0);
     swing_ = towards(swing_, stepping < 0.05 ? 0.0 : stepping, 3.0 * dt);
-    phase_ += dt * std::max(speed_ / cycleLength(speed_), 0.6 * std::min(1.0, std::abs(turn_rate_)));
+    phase_ +=
+        dt * std::max(speed_ / cycleLength(speed_), 0.6 * std::min(1.0, std::abs(turn_rate_)));
   }
 
   Posture posture() const {

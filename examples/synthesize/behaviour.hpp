@@ -37,7 +37,7 @@ struct Behaviour {
   bool starts_seated = false;
   double lag = 0.0;  ///< How far into the actions the first frame is (s).
   std::vector<Action> actions;
-  std::uint64_t seed = 1;  ///< Of the small movements.
+  std::uint64_t seed = 0;  ///< Of the small movements; 0 = the scene chooses one.
 };
 
 /// Postures over time: the behaviour played once through and kept, then read at any time.

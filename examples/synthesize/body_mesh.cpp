@@ -155,17 +155,16 @@ std::vector<LitMesh> buildBody(TextureLibrary& textures, const BodyLook& look) {
     });
   };
   const Material shirt{cloth(look.shirt, look.shirt_color, look.shirt_second, 1)};
-  const Material trousers{cloth(look.trousers, look.trousers_color,
-                                paint::scaled(look.trousers_color, 1.6), 2)};
+  const Material trousers{
+      cloth(look.trousers, look.trousers_color, paint::scaled(look.trousers_color, 1.6), 2)};
   const Material skin{textures.add(
       [color = look.skin, seed = mixBits(look.seed + 3)] { return paint::skin(color, seed); })};
   const Material face{textures.add([look] {
     return paint::head(look.skin, look.hair, look.beard, look.glasses, mixBits(look.seed + 4));
   })};
-  const Material shoe{textures.add([color = paint::scaled(look.trousers_color, 0.6),
-                                    seed = mixBits(look.seed + 5)] {
-    return paint::shoe(color, seed);
-  })};
+  const Material shoe{
+      textures.add([color = paint::scaled(look.trousers_color, 0.6),
+                    seed = mixBits(look.seed + 5)] { return paint::shoe(color, seed); })};
   // A limb shows part of the cloth's picture, so that its pattern is as coarse as the trunk's.
   const auto part = [](Material m, float u, float width, float height) {
     m.uv_min = {u, 0.2f};
@@ -177,17 +176,16 @@ std::vector<LitMesh> buildBody(TextureLibrary& textures, const BodyLook& look) {
   parts.push_back(bounded(chestMesh(h, g, shirt)));
   parts.push_back(bounded(headMesh(h, face)));
   for (const float u : {0.0f, 0.5f}) {
+    parts.push_back(bounded(limb(proportions::kUpperArm * h, 0.031f * h * g, 0.028f * h * g,
+                                 0.025f * h * g, part(shirt, u, 0.35f, 0.55f))));
     parts.push_back(bounded(
-        limb(proportions::kUpperArm * h, 0.031f * h * g, 0.028f * h * g, 0.025f * h * g,
-             part(shirt, u, 0.35f, 0.55f))));
-    parts.push_back(bounded(forearmMesh(
-        h, g, look.long_sleeves ? part(shirt, u + 0.1f, 0.3f, 0.5f) : skin, skin)));
+        forearmMesh(h, g, look.long_sleeves ? part(shirt, u + 0.1f, 0.3f, 0.5f) : skin, skin)));
   }
   for (const float u : {0.0f, 0.5f}) {
     parts.push_back(bounded(limb(proportions::kThigh * h, 0.053f * h * g, 0.046f * h * g,
                                  0.035f * h * g, part(trousers, u, 0.5f, 0.7f))));
-    parts.push_back(bounded(limb(proportions::kShin * h, 0.036f * h * g, 0.035f * h * g,
-                                 0.026f * h, part(trousers, u, 0.4f, 0.75f))));
+    parts.push_back(bounded(limb(proportions::kShin * h, 0.036f * h * g, 0.035f * h * g, 0.026f * h,
+                                 part(trousers, u, 0.4f, 0.75f))));
     parts.push_back(bounded(footMesh(h, shoe)));
   }
   return parts;

@@ -68,9 +68,8 @@ FootTarget footAt(double phase, const Posture& p) {
 void appendLeg(double h, const Isometry3d& root, const Vector3d& hip, double side,
                const FootTarget& foot, std::vector<Isometry3d>& poses) {
   const Vector3d forward = root.linear().col(0);
-  const Vector3d ankle =
-      root * Vector3d(foot.x, side * proportions::kHipHalfWidth * h,
-                      static_cast<double>(proportions::kAnkle) * h + foot.lift);
+  const Vector3d ankle = root * Vector3d(foot.x, side * proportions::kHipHalfWidth * h,
+                                         static_cast<double>(proportions::kAnkle) * h + foot.lift);
   const double thigh = static_cast<double>(proportions::kThigh) * h;
   const double shin = static_cast<double>(proportions::kShin) * h;
   const Vector3d to_ankle = ankle - hip;
@@ -113,8 +112,7 @@ void appendArm(double h, const Isometry3d& chest, double side, double raise, dou
 
 std::vector<Isometry3d> bodyPoses(double height, const Posture& p) {
   const double h = height;
-  const Isometry3d root =
-      offset({p.x, p.y, 0.0}) * rotation(p.heading, Vector3d::UnitZ());
+  const Isometry3d root = offset({p.x, p.y, 0.0}) * rotation(p.heading, Vector3d::UnitZ());
   const double cycle = 2.0 * kPi * p.phase;
   // The hips sink while the legs are apart, so that both feet can reach the floor.
   const double spread_angle = 0.5 * p.step / (2.0 * 0.245 * h);
@@ -125,8 +123,8 @@ std::vector<Isometry3d> bodyPoses(double height, const Posture& p) {
   const double hips_back = -0.24 * h * p.sit;
   const double hip_sway = 0.012 * p.swing * std::sin(cycle);
   const double hip_yaw = 0.09 * p.swing * std::cos(cycle);
-  const Isometry3d pelvis = root * offset({hips_back, hip_sway, hip_height}) *
-                            rotation(-hip_yaw, Vector3d::UnitZ());
+  const Isometry3d pelvis =
+      root * offset({hips_back, hip_sway, hip_height}) * rotation(-hip_yaw, Vector3d::UnitZ());
   const Isometry3d chest = root * offset({hips_back, hip_sway, hip_height}) *
                            offset({0.0, 0.0, proportions::kWaist * h}) *
                            rotation(p.lean + 0.04 * p.swing, Vector3d::UnitY()) *

@@ -29,8 +29,7 @@ std::pair<int, double> slotAndSwing(double time, double slot) {
   const double number = std::floor(place);
   const double q = place - number;
   const int index = static_cast<int>(number) % 3;
-  return {index < 0 ? index + 3 : index,
-          1.3 * std::sin(2.0 * kPi * q) * std::sin(kPi * q)};
+  return {index < 0 ? index + 3 : index, 1.3 * std::sin(2.0 * kPi * q) * std::sin(kPi * q)};
 }
 
 /// Six slow signals of unit variance, one a degree of freedom.
@@ -134,8 +133,8 @@ CameraPath trianglePath(const Vector3d& corner, double side, double period,
       const double number = std::floor(place);
       const auto first = static_cast<std::size_t>(((static_cast<int>(number) % 3) + 3) % 3);
       const double weight = std::exp(-0.08 * i * i);
-      position += weight * (corners[first] +
-                            (place - number) * (corners[(first + 1) % 3] - corners[first]));
+      position += weight *
+                  (corners[first] + (place - number) * (corners[(first + 1) % 3] - corners[first]));
       total += weight;
     }
     position /= total;
@@ -150,9 +149,8 @@ CameraPath strollPath(const Vector3d& position, const Vector3d& reach, const Vec
     const Vector3d at =
         position + Vector3d(reach.x() * std::sin(angle), reach.y() * std::sin(1.37 * angle + 0.8),
                             reach.z() * std::sin(1.71 * angle + 2.0));
-    const Vector3d eye =
-        target + Vector3d(0.9 * reach.x() * std::sin(0.8 * angle + 0.5), 0.0,
-                          0.6 * reach.z() * std::sin(1.2 * angle));
+    const Vector3d eye = target + Vector3d(0.9 * reach.x() * std::sin(0.8 * angle + 0.5), 0.0,
+                                           0.6 * reach.z() * std::sin(1.2 * angle));
     return lookAt(at, eye);
   };
 }

@@ -28,11 +28,11 @@ CameraPath panningPath(const Eigen::Isometry3d& pose, double yaw, double pitch, 
 struct HalfSphere {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< (m)
   double radius = 2.2;                               ///< (m)
-  double azimuth = 0.7;          ///< Amplitude to both sides of -y (rad).
-  double azimuth_period = 24.0;  ///< (s)
-  double low = 0.2;              ///< Elevations between which it swings (rad).
-  double high = 0.5;             ///< (rad)
-  double elevation_period = 13.0;  ///< (s)
+  double azimuth = 0.7;                              ///< Amplitude to both sides of -y (rad).
+  double azimuth_period = 24.0;                      ///< (s)
+  double low = 0.2;                                  ///< Elevations between which it swings (rad).
+  double high = 0.5;                                 ///< (rad)
+  double elevation_period = 13.0;                    ///< (s)
 };
 CameraPath halfSpherePath(const HalfSphere& sphere);
 

@@ -66,9 +66,8 @@ Palette::Palette(TextureLibrary& t, std::uint64_t seed) {
   for (int i = 0; i < 4; ++i) {
     posters.push_back(t.add([s = fresh()] { return paint::sciencePoster(s); }));
     posters.push_back(t.add([s = fresh()] { return paint::artPoster(s); }));
-    posters.push_back(t.add([s = fresh(), i] {
-      return i % 2 == 0 ? paint::mapPoster(s) : paint::photoPoster(s);
-    }));
+    posters.push_back(t.add(
+        [s = fresh(), i] { return i % 2 == 0 ? paint::mapPoster(s) : paint::photoPoster(s); }));
   }
   posters.push_back(t.add([s = fresh()] { return paint::calendar(s); }));
 }
@@ -93,8 +92,9 @@ void Furnisher::desk(const Isometry3f& at, float width, float depth, float heigh
          0.25f);
   for (const float sx : {-1.0f, 1.0f}) {
     for (const float sy : {-1.0f, 1.0f}) {
-      addBox(mesh, moved(at, sx * (0.5f * width - 0.06f), sy * (0.5f * depth - 0.06f),
-                         0.5f * height - 0.0125f),
+      addBox(mesh,
+             moved(at, sx * (0.5f * width - 0.06f), sy * (0.5f * depth - 0.06f),
+                   0.5f * height - 0.0125f),
              {0.05f, 0.05f, height - 0.025f}, BoxMaterials::all(metal));
     }
     addBox(mesh, moved(at, sx * (0.5f * width - 0.06f), 0, height - 0.06f),
@@ -108,8 +108,8 @@ void Furnisher::desk(const Isometry3f& at, float width, float depth, float heigh
 void Furnisher::monitor(const Isometry3f& at, float width, bool on) {
   const float height = width * 0.62f;
   const Material black{palette_.black_plastic, 0.3f, {0, 0}, {1, 1}};
-  const Material shell{random_.chance(0.5) ? palette_.black_plastic : palette_.grey_metal, 0.3f,
-                       {0, 0}, {1, 1}};
+  const Material shell{
+      random_.chance(0.5) ? palette_.black_plastic : palette_.grey_metal, 0.3f, {0, 0}, {1, 1}};
   Mesh mesh;
   addBox(mesh, moved(at, 0, 0.03f, 0.01f), {0.24f, 0.18f, 0.02f}, BoxMaterials::all(shell));
   addBox(mesh, moved(at, 0, 0.06f, 0.13f), {0.05f, 0.03f, 0.24f}, BoxMaterials::all(shell));
@@ -118,7 +118,8 @@ void Furnisher::monitor(const Isometry3f& at, float width, bool on) {
   addBox(mesh, moved(at, 0, 0.06f, centre), {0.5f * width, 0.04f, 0.6f * height},
          BoxMaterials::all(black));
   Mesh panel;
-  const Material picture{on ? pick(palette_.screens) : palette_.black_plastic, 0.0f, {0, 0}, {1, 1}};
+  const Material picture{
+      on ? pick(palette_.screens) : palette_.black_plastic, 0.0f, {0, 0}, {1, 1}};
   addQuad(panel, point(at, -0.5f * width + 0.016f, 0.008f, centre + 0.5f * height - 0.016f),
           at.linear() * Vector3f(width - 0.032f, 0, 0),
           at.linear() * Vector3f(0, 0, -height + 0.032f), picture);
@@ -140,8 +141,9 @@ void Furnisher::mouse(const Isometry3f& at) {
   addEllipsoid(mesh, moved(at, 0, 0, 0.012f), {0.032f, 0.055f, 0.022f}, 14,
                {palette_.black_plastic, 0.0f, {0, 0}, {0.3f, 0.3f}});
   add(std::move(mesh));
-  cable({point(at, 0, 0.05f, 0.01f), point(at, 0.03f, 0.15f, 0.004f), point(at, 0.0f, 0.3f, 0.004f)},
-        0.003f);
+  cable(
+      {point(at, 0, 0.05f, 0.01f), point(at, 0.03f, 0.15f, 0.004f), point(at, 0.0f, 0.3f, 0.004f)},
+      0.003f);
 }
 
 void Furnisher::mug(const Isometry3f& at) {
@@ -190,7 +192,8 @@ void Furnisher::bookPile(const Isometry3f& at, int books) {
     const Material spine{palette_.spines, 0.0f, {u, 0.0f}, {u + 1.0f / 16.0f, 1.0f}};
     const Material paper{palette_.paper_white, 0.2f, {0, 0}, {1, 1}};
     BoxMaterials faces{spine, paper, paper, paper, cover, cover};
-    addBox(mesh, moved(at, 0, 0, z + 0.5f * thickness, static_cast<float>(random_.uniform(-0.3, 0.3))),
+    addBox(mesh,
+           moved(at, 0, 0, z + 0.5f * thickness, static_cast<float>(random_.uniform(-0.3, 0.3))),
            {width * 1.3f, width, thickness}, faces);
     z += thickness;
   }
@@ -214,10 +217,12 @@ void Furnisher::deskLamp(const Isometry3f& at) {
   Mesh mesh;
   const Material metal{palette_.dark_metal, 0.0f, {0, 0}, {1, 1}};
   addCylinder(mesh, point(at, 0, 0, 0), point(at, 0, 0, 0.025f), 0.09f, 0.085f, 20, metal);
-  addCylinder(mesh, point(at, 0, 0, 0.02f), point(at, 0.05f, 0.12f, 0.3f), 0.009f, 0.009f, 8, metal);
+  addCylinder(mesh, point(at, 0, 0, 0.02f), point(at, 0.05f, 0.12f, 0.3f), 0.009f, 0.009f, 8,
+              metal);
   addCylinder(mesh, point(at, 0.05f, 0.12f, 0.3f), point(at, 0, -0.1f, 0.46f), 0.009f, 0.009f, 8,
               metal);
-  addCylinder(mesh, point(at, 0, -0.17f, 0.37f), point(at, 0, -0.1f, 0.47f), 0.085f, 0.03f, 18, metal);
+  addCylinder(mesh, point(at, 0, -0.17f, 0.37f), point(at, 0, -0.1f, 0.47f), 0.085f, 0.03f, 18,
+              metal);
   add(std::move(mesh));
 }
 
@@ -225,7 +230,8 @@ void Furnisher::telephone(const Isometry3f& at) {
   Mesh mesh;
   const Material black{palette_.black_plastic, 0.3f, {0, 0}, {1, 1}};
   const Material keys{pick(palette_.keyboards), 0.0f, {0, 0}, {0.3f, 1}};
-  addBox(mesh, moved(at, 0, 0, 0.025f), {0.18f, 0.2f, 0.05f}, BoxMaterials::topAndSides(keys, black));
+  addBox(mesh, moved(at, 0, 0, 0.025f), {0.18f, 0.2f, 0.05f},
+         BoxMaterials::topAndSides(keys, black));
   addBox(mesh, moved(at, -0.065f, 0, 0.065f), {0.045f, 0.2f, 0.035f}, BoxMaterials::all(black));
   add(std::move(mesh));
   cable({point(at, -0.065f, -0.1f, 0.05f), point(at, -0.1f, -0.13f, 0.01f),

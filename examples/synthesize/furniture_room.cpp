@@ -64,7 +64,8 @@ void Furnisher::cabinet(const Isometry3f& at, float width, float height) {
   Mesh mesh;
   const Material body{palette_.white_plastic, 0.7f, {0, 0}, {1, 1}};
   const Material front{palette_.light_wood, 1.1f, {0, 0}, {1, 1}};
-  addBox(mesh, moved(at, 0, 0, 0.5f * height), {width, 0.42f, height}, BoxMaterials::all(body), 0.4f);
+  addBox(mesh, moved(at, 0, 0, 0.5f * height), {width, 0.42f, height}, BoxMaterials::all(body),
+         0.4f);
   const int drawers = std::max(2, static_cast<int>(height / 0.3f));
   const float gap = height / static_cast<float>(drawers);
   for (int i = 0; i < drawers; ++i) {
@@ -83,9 +84,10 @@ void Furnisher::officeChair(const Isometry3f& at, bool red) {
   Mesh mesh;
   const Material fabric{red ? palette_.red_fabric : palette_.blue_fabric, 0.0f, {0, 0}, {1, 1}};
   const Material metal{palette_.dark_metal, 0.0f, {0, 0}, {1, 1}};
-  addLoft(mesh, moved(at, 0, 0, 0.42f),
-          {{0, 0.21f, 0.2f, 0, 0, 4}, {0.03f, 0.24f, 0.23f, 0, 0, 4}, {0.075f, 0.22f, 0.21f, 0, 0, 4}},
-          24, fabric);
+  addLoft(
+      mesh, moved(at, 0, 0, 0.42f),
+      {{0, 0.21f, 0.2f, 0, 0, 4}, {0.03f, 0.24f, 0.23f, 0, 0, 4}, {0.075f, 0.22f, 0.21f, 0, 0, 4}},
+      24, fabric);
   addLoft(mesh, moved(at, 0, 0.23f, 0.6f),
           {{0, 0.17f, 0.025f, 0, 0, 4},
            {0.15f, 0.22f, 0.035f, 0, 0.01f, 4},
@@ -103,8 +105,8 @@ void Furnisher::officeChair(const Isometry3f& at, bool red) {
                 0.03f, 10, metal);
   }
   for (const float side : {-1.0f, 1.0f}) {
-    addCylinder(mesh, point(at, side * 0.25f, 0.08f, 0.45f), point(at, side * 0.27f, 0.08f, 0.66f), 0.014f,
-                0.014f, 8, metal);
+    addCylinder(mesh, point(at, side * 0.25f, 0.08f, 0.45f), point(at, side * 0.27f, 0.08f, 0.66f),
+                0.014f, 0.014f, 8, metal);
     addBox(mesh, moved(at, side * 0.27f, 0.02f, 0.67f), {0.05f, 0.26f, 0.03f},
            BoxMaterials::all({palette_.black_plastic, 0.3f, {0, 0}, {1, 1}}));
   }
@@ -167,22 +169,23 @@ void Furnisher::plant(const Isometry3f& at, float height) {
   const float pot = 0.25f * height;
   addCylinder(mesh, point(at, 0, 0, 0), point(at, 0, 0, pot), 0.12f * height, 0.16f * height, 20,
               {palette_.red_fabric, 0.0f, {0, 0}, {1, 1}});
-  addCylinder(mesh, point(at, 0, 0, pot), point(at, 0, 0, pot + 0.004f), 0.15f * height, 0.15f * height, 20,
-              {palette_.soil, 0.0f, {0, 0}, {1, 1}});
+  addCylinder(mesh, point(at, 0, 0, pot), point(at, 0, 0, pot + 0.004f), 0.15f * height,
+              0.15f * height, 20, {palette_.soil, 0.0f, {0, 0}, {1, 1}});
   for (int i = 0; i < 26; ++i) {
     const auto angle = static_cast<float>(random_.uniform(0.0, 6.28));
     const auto reach = static_cast<float>(random_.uniform(0.12, 0.36)) * height;
     const auto top = static_cast<float>(random_.uniform(0.55, 1.0)) * height;
     const Vector3f tip = point(at, reach * std::cos(angle), reach * std::sin(angle), top);
-    const Vector3f root = point(at, 0.1f * reach * std::cos(angle), 0.1f * reach * std::sin(angle), pot);
+    const Vector3f root =
+        point(at, 0.1f * reach * std::cos(angle), 0.1f * reach * std::sin(angle), pot);
     const Vector3f bend = 0.35f * root + 0.65f * tip + Vector3f(0, 0, 0.12f * height);
     const Material green{palette_.green_leaf, 0.0f, {0, 0}, {1, 1}};
     addCylinder(mesh, root, bend, 0.006f, 0.004f, 5, green);
     Isometry3f leaf = Isometry3f::Identity();
     leaf.translation() = 0.5f * (bend + tip);
-    leaf.linear() = Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), tip - bend)
-                        .toRotationMatrix() *
-                    Eigen::AngleAxisf(angle, Vector3f::UnitZ()).toRotationMatrix();
+    leaf.linear() =
+        Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), tip - bend).toRotationMatrix() *
+        Eigen::AngleAxisf(angle, Vector3f::UnitZ()).toRotationMatrix();
     const float length = 0.5f * (tip - bend).norm() + 0.05f;
     addEllipsoid(mesh, leaf, {0.045f, 0.006f, length}, 10, green);
   }
@@ -210,8 +213,10 @@ void Furnisher::stepLadder(const Isometry3f& at, float height) {
   Mesh mesh;
   const Material metal{palette_.grey_metal, 0.0f, {0, 0}, {1, 1}};
   for (const float side : {-0.22f, 0.22f}) {
-    addCylinder(mesh, point(at, side, -0.35f, 0), point(at, 0.8f * side, 0, height), 0.02f, 0.02f, 8, metal);
-    addCylinder(mesh, point(at, side, 0.35f, 0), point(at, 0.8f * side, 0, height), 0.02f, 0.02f, 8, metal);
+    addCylinder(mesh, point(at, side, -0.35f, 0), point(at, 0.8f * side, 0, height), 0.02f, 0.02f,
+                8, metal);
+    addCylinder(mesh, point(at, side, 0.35f, 0), point(at, 0.8f * side, 0, height), 0.02f, 0.02f, 8,
+                metal);
   }
   for (float z = 0.25f; z < height; z += 0.25f) {
     const float y = -0.35f * (1.0f - z / height);
@@ -245,8 +250,8 @@ void Furnisher::onWall(const Vector3f& centre, const Vector3f& normal, float wid
   Mesh mesh;
   const Material picture{texture, 0.0f, {0, 0}, {1, 1}};
   const Material edge{palette_.paper_white, 0.2f, {0, 0}, {1, 1}};
-  addBox(mesh, pose, {width, thickness, height},
-         {picture, edge, edge, edge, edge, edge}, glow > 0.0f ? 1e9f : 0.5f);
+  addBox(mesh, pose, {width, thickness, height}, {picture, edge, edge, edge, edge, edge},
+         glow > 0.0f ? 1e9f : 0.5f);
   add(std::move(mesh), glow);
 }
 

@@ -16,10 +16,10 @@ struct Lighting {
     Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< (m)
     float strength = 1.0f;                               ///< Factor of albedo at 1 m, head on.
   };
-  float ambient = 0.46f;                                        ///< From everywhere.
-  float sky = 0.16f;                                            ///< More from above than below.
-  Eigen::Vector3f window_direction{-0.8f, -0.35f, 0.5f};        ///< Towards the window.
-  float window = 0.22f;                                         ///< On a surface that faces it.
+  float ambient = 0.46f;                                  ///< From everywhere.
+  float sky = 0.16f;                                      ///< More from above than below.
+  Eigen::Vector3f window_direction{-0.8f, -0.35f, 0.5f};  ///< Towards the window.
+  float window = 0.22f;                                   ///< On a surface that faces it.
   std::vector<Lamp> lamps;
 
   /// Factor of a surface's albedo, 0.15..1.35.

@@ -18,14 +18,16 @@ using hmcdyn::synthesize::NoiseModel;
 using hmcdyn::synthesize::SequenceOptions;
 
 constexpr const char* kDescription =
-    "Renders a dynamic RGB-D sequence in the format of the TUM benchmark, with exact ground truth.\n"
+    "Renders a dynamic RGB-D sequence in the format of the TUM benchmark, with exact ground "
+    "truth.\n"
     "\n"
     "  hmcdyn_synthesize --list\n"
     "  hmcdyn_synthesize --scene walking_xyz --output out/walking_xyz --frames 150\n"
     "  hmcdyn_synthesize --scene crowd --output out/crowd --box-drop 0.1 --box-jitter 4\n"
     "  hmcdyn_synthesize --scene empty --output out/exact --noise none\n"
     "\n"
-    "Written: rgb/, depth/ (16-bit, 5000 = 1 m), mask/ (0 static, 128 person at rest, 255 moving),\n"
+    "Written: rgb/, depth/ (16-bit, 5000 = 1 m), mask/ (0 static, 128 person at rest, 255 "
+    "moving),\n"
     "rgb.txt, depth.txt, associations.txt, groundtruth.txt, boxes.txt, calibration.yaml.\n";
 
 void parseSize(const std::string& text, SequenceOptions& options) {

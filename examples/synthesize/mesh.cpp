@@ -64,8 +64,8 @@ void addCap(Mesh& mesh, const Isometry3f& pose, const Ring& ring, int segments, 
   for (int i = 0; i <= segments; ++i) {
     const float angle = 2.0f * kPi * static_cast<float>(i) / static_cast<float>(segments);
     const Vector2f p = onRing(ring, angle).first;
-    const Vector2f uv = middle + 0.5f * half.cwiseProduct(Vector2f(std::cos(angle),
-                                                                   std::sin(angle)));
+    const Vector2f uv =
+        middle + 0.5f * half.cwiseProduct(Vector2f(std::cos(angle), std::sin(angle)));
     const std::uint32_t corner = addVertex(mesh, pose * Vector3f(p.x(), p.y(), ring.z), normal, uv);
     if (i > 0) {
       const std::uint32_t a = up ? corner - 1 : corner;
@@ -107,8 +107,8 @@ void addQuad(Mesh& mesh, const Vector3f& origin, const Vector3f& right, const Ve
   }
 }
 
-void addBox(Mesh& mesh, const Isometry3f& pose, const Vector3f& size,
-            const BoxMaterials& materials, float max_cell) {
+void addBox(Mesh& mesh, const Isometry3f& pose, const Vector3f& size, const BoxMaterials& materials,
+            float max_cell) {
   const Vector3f h = 0.5f * size;
   const Vector3f x = pose.linear() * Vector3f(size.x(), 0, 0);
   const Vector3f y = pose.linear() * Vector3f(0, size.y(), 0);
@@ -170,11 +170,9 @@ void addCylinder(Mesh& mesh, const Vector3f& from, const Vector3f& to, float fro
   const Vector3f axis = to - from;
   Isometry3f pose = Isometry3f::Identity();
   pose.translation() = from;
-  pose.linear() =
-      Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), axis).toRotationMatrix();
-  addLoft(mesh, pose,
-          {{0.0f, from_radius, from_radius}, {axis.norm(), to_radius, to_radius}}, segments,
-          material);
+  pose.linear() = Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitZ(), axis).toRotationMatrix();
+  addLoft(mesh, pose, {{0.0f, from_radius, from_radius}, {axis.norm(), to_radius, to_radius}},
+          segments, material);
 }
 
 void addEllipsoid(Mesh& mesh, const Isometry3f& pose, const Vector3f& radii, int segments,

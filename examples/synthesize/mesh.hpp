@@ -29,8 +29,8 @@ struct Mesh {
 
 /// How a surface is papered.
 struct Material {
-  int texture = 0;            ///< Number in the TextureLibrary.
-  float tile = 0.0f;          ///< Side that one copy of the picture covers (m); 0 = whole surface.
+  int texture = 0;    ///< Number in the TextureLibrary.
+  float tile = 0.0f;  ///< Side that one copy of the picture covers (m); 0 = whole surface.
   Eigen::Vector2f uv_min{0.0f, 0.0f};  ///< Part of the picture that is used when tile is 0.
   Eigen::Vector2f uv_max{1.0f, 1.0f};
 };

@@ -30,8 +30,8 @@ cv::Mat smoothNoise(cv::Size size, int cells, int octaves, double persistence, R
     cv::Mat fine;
     cv::resize(wrapped, fine, {wrapped.cols * step_x, wrapped.rows * step_y}, 0.0, 0.0,
                cv::INTER_CUBIC);
-    cv::Mat cut = fine(cv::Rect(kBorder * step_x, kBorder * step_y, columns * step_x,
-                                rows * step_y));
+    cv::Mat cut =
+        fine(cv::Rect(kBorder * step_x, kBorder * step_y, columns * step_x, rows * step_y));
     if (cut.size() != size) {
       cv::Mat fitted;
       cv::resize(cut, fitted, size);
@@ -46,13 +46,14 @@ cv::Mat smoothNoise(cv::Size size, int cells, int octaves, double persistence, R
 cv::Mat plain(cv::Size size, const Color& color) { return cv::Mat(size, CV_8UC3, color); }
 
 void addField(cv::Mat& picture, const cv::Mat& field, double amplitude) {
+  const auto strength = static_cast<float>(amplitude);
   for (int y = 0; y < picture.rows; ++y) {
     auto* row = picture.ptr<cv::Vec3b>(y);
     const auto* values = field.ptr<float>(y);
     for (int x = 0; x < picture.cols; ++x) {
-      const double change = amplitude * static_cast<double>(values[x]);
+      const float change = strength * values[x];
       for (int c = 0; c < 3; ++c) {
-        row[x][c] = cv::saturate_cast<std::uint8_t>(row[x][c] + change);
+        row[x][c] = cv::saturate_cast<std::uint8_t>(static_cast<float>(row[x][c]) + change);
       }
     }
   }

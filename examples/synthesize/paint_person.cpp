@@ -45,8 +45,8 @@ void drawPrint(cv::Mat& picture, const Color& second, Random& random) {
   }
   cv::putText(picture, randomWord(random, 4, 6), {middle.x - 66, middle.y + 95},
               cv::FONT_HERSHEY_TRIPLEX, 1.3, second, 3, cv::LINE_AA);
-  cv::putText(picture, randomWord(random, 2, 3), {20, middle.y + 30}, cv::FONT_HERSHEY_TRIPLEX,
-              2.2, second, 5, cv::LINE_AA);
+  cv::putText(picture, randomWord(random, 2, 3), {20, middle.y + 30}, cv::FONT_HERSHEY_TRIPLEX, 2.2,
+              second, 5, cv::LINE_AA);
   cv::putText(picture, randomWord(random, 2, 3), {picture.cols - 110, middle.y + 30},
               cv::FONT_HERSHEY_TRIPLEX, 2.2, second, 5, cv::LINE_AA);
 }
@@ -76,8 +76,7 @@ cv::Mat cloth(Cloth kind, const Color& color, const Color& second, std::uint64_t
       for (int y = 0; y < picture.rows; y += 6) {
         for (int x = 0; x < picture.cols; x += 8) {
           cv::line(picture, {x, y}, {x + 4, y + 4}, scaled(color, random.uniform(0.6, 0.85)), 1);
-          cv::line(picture, {x + 4, y + 4}, {x + 8, y}, scaled(color, random.uniform(1.1, 1.4)),
-                   1);
+          cv::line(picture, {x + 4, y + 4}, {x + 8, y}, scaled(color, random.uniform(1.1, 1.4)), 1);
         }
       }
       break;
@@ -153,8 +152,7 @@ cv::Mat head(const Color& skin_color, const Color& hair, bool beard, bool glasse
                cv::LINE_AA);
   }
   cv::line(picture, {250, 140}, {246, 172}, scaled(skin_color, 0.78), 3, cv::LINE_AA);
-  cv::ellipse(picture, {256, 198}, {27, 6}, 0, 0, 360, Color(85, 80, 165), cv::FILLED,
-              cv::LINE_AA);
+  cv::ellipse(picture, {256, 198}, {27, 6}, 0, 0, 360, Color(85, 80, 165), cv::FILLED, cv::LINE_AA);
   cv::line(picture, {229, 198}, {283, 198}, Color(50, 45, 95), 2, cv::LINE_AA);
   addField(picture, smoothNoise(picture.size(), 8, 4, 0.6, random), 10.0);
   return picture;

@@ -20,8 +20,8 @@ void drawPlot(cv::Mat& picture, const cv::Rect& area, Random& random) {
     const Color color = randomColor(random, 20, 200);
     cv::Point previous(area.x, area.y + random.integer(area.height / 4, area.height * 3 / 4));
     for (int x = area.x + 8; x < area.x + area.width - 4; x += 12) {
-      const int y = std::clamp(previous.y + random.integer(-14, 14), area.y + 4,
-                               area.y + area.height - 4);
+      const int y =
+          std::clamp(previous.y + random.integer(-14, 14), area.y + 4, area.y + area.height - 4);
       if (kind == 0) {
         cv::line(picture, previous, {x, y}, color, 2, cv::LINE_AA);
       } else if (kind == 1) {
@@ -186,8 +186,8 @@ cv::Mat calendar(std::uint64_t seed) {
     const cv::Rect cell(20 + (day % 7) * 68, 330 + (day / 7) * 74, 64, 70);
     cv::rectangle(picture, cell, Color(120, 120, 120), 1);
     cv::putText(picture, std::to_string(day % 31 + 1), {cell.x + 6, cell.y + 40},
-                cv::FONT_HERSHEY_DUPLEX, 1.1,
-                day % 7 > 4 ? Color(40, 40, 200) : Color(30, 30, 30), 2, cv::LINE_AA);
+                cv::FONT_HERSHEY_DUPLEX, 1.1, day % 7 > 4 ? Color(40, 40, 200) : Color(30, 30, 30),
+                2, cv::LINE_AA);
     if (random.chance(0.25)) {
       cv::circle(picture, {cell.x + 32, cell.y + 30}, 26, randomColor(random), 3, cv::LINE_AA);
     }
@@ -215,8 +215,7 @@ cv::Mat whiteboard(std::uint64_t seed) {
         cv::arrowedLine(picture, {area.x, area.y + 160}, {area.x, area.y + 10}, pen, 2);
         cv::arrowedLine(picture, {area.x, area.y + 160}, {area.x + 170, area.y + 160}, pen, 2);
         for (int x = 5; x < 160; x += 5) {
-          cv::line(picture,
-                   {area.x + x, area.y + 90 + static_cast<int>(50 * std::sin(x * 0.06))},
+          cv::line(picture, {area.x + x, area.y + 90 + static_cast<int>(50 * std::sin(x * 0.06))},
                    {area.x + x + 5, area.y + 90 + static_cast<int>(50 * std::sin(x * 0.06 + 0.3))},
                    pen, 3, cv::LINE_AA);
         }
@@ -249,8 +248,7 @@ cv::Mat screen(std::uint64_t seed) {
   }
   const bool dark = random.chance(0.5);
   drawWindow(picture, {random.integer(20, 60), random.integer(20, 40), 360, 300}, dark, random);
-  drawWindow(picture, {random.integer(330, 370), random.integer(60, 110), 250, 240}, !dark,
-             random);
+  drawWindow(picture, {random.integer(330, 370), random.integer(60, 110), 250, 240}, !dark, random);
   drawPlot(picture, {440, 230, 180, 120}, random);
   cv::rectangle(picture, {0, 378, 640, 22}, Color(50, 40, 40), cv::FILLED);
   for (int x = 8; x < 300; x += 34) {
@@ -317,9 +315,8 @@ cv::Mat bookCover(std::uint64_t seed) {
   cv::Mat picture = plain({256, 362}, color);
   addField(picture, smoothNoise(picture.size(), 4, 4, 0.6, random), 16.0);
   for (int i = 0; i < 9; ++i) {
-    cv::circle(picture, {random.integer(20, 236), random.integer(120, 300)},
-               random.integer(8, 46), randomColor(random), random.chance(0.5) ? 4 : cv::FILLED,
-               cv::LINE_AA);
+    cv::circle(picture, {random.integer(20, 236), random.integer(120, 300)}, random.integer(8, 46),
+               randomColor(random), random.chance(0.5) ? 4 : cv::FILLED, cv::LINE_AA);
   }
   cv::rectangle(picture, {14, 22, 228, 84}, scaled(color, 0.45), cv::FILLED);
   cv::putText(picture, randomWord(random, 5, 7), {26, 60}, cv::FONT_HERSHEY_DUPLEX, 1.3,

@@ -42,11 +42,10 @@ void addWoodGrain(cv::Mat& picture, const cv::Rect& area, double strength, Rando
   cv::Mat field(part.size(), CV_32FC1);
   for (int y = 0; y < part.rows; ++y) {
     for (int x = 0; x < part.cols; ++x) {
-      const double rings =
-          std::sin(6.2832 * (frequency * y + 1.6 * static_cast<double>(bend.at<float>(y, x))) +
-                   phase);
-      field.at<float>(y, x) = static_cast<float>(0.6 * rings * std::abs(rings)) +
-                              0.5f * fibres.at<float>(y, x);
+      const double rings = std::sin(
+          6.2832 * (frequency * y + 1.6 * static_cast<double>(bend.at<float>(y, x))) + phase);
+      field.at<float>(y, x) =
+          static_cast<float>(0.6 * rings * std::abs(rings)) + 0.5f * fibres.at<float>(y, x);
     }
   }
   addField(part, field, strength);
@@ -240,8 +239,8 @@ cv::Mat windowView(std::uint64_t seed) {
     cv::rectangle(picture, cv::Rect(x, top, width, 512 - top), wall, cv::FILLED);
     for (int wy = top + 12; wy < 500; wy += 30) {
       for (int wx = x + 8; wx + 14 < x + width; wx += 24) {
-        cv::rectangle(picture, cv::Rect(wx, wy, 13, 18),
-                      scaled(wall, random.uniform(0.25, 0.6)), cv::FILLED);
+        cv::rectangle(picture, cv::Rect(wx, wy, 13, 18), scaled(wall, random.uniform(0.25, 0.6)),
+                      cv::FILLED);
       }
     }
     x += width + random.integer(0, 40);

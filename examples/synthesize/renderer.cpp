@@ -146,7 +146,9 @@ class PartMotion {
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options)
-    : scene_(scene), options_((check(options), options)), rasterizer_(options.width, options.height) {
+    : scene_(scene),
+      options_((check(options), options)),
+      rasterizer_(options.width, options.height) {
   sums_.resize(3U * static_cast<std::size_t>(options.width) *
                static_cast<std::size_t>(options.height));
 }
@@ -200,8 +202,8 @@ RenderedFrame Renderer::render(double time) {
 void Renderer::accumulateColor(double dither) {
   for (int v = 0; v < options_.height; ++v) {
     const std::uint32_t* ids = rasterizer_.row(v);
-    std::uint16_t* sums = sums_.data() + 3U * static_cast<std::size_t>(v) *
-                                             static_cast<std::size_t>(options_.width);
+    std::uint16_t* sums =
+        sums_.data() + 3U * static_cast<std::size_t>(v) * static_cast<std::size_t>(options_.width);
     for (int first = 0; first < options_.width;) {
       int last = first;
       while (last + 1 < options_.width && ids[last + 1] == ids[first]) {
@@ -211,8 +213,8 @@ void Renderer::accumulateColor(double dither) {
         const Surface& surface = rasterizer_.surface(ids[first]);
         const Instance& instance = rasterizer_.instance(surface);
         const int texture = instance.body->mesh.triangles[surface.triangle].texture;
-        shadeRun(attributesOf(surface, instance, v, rasterizer_.camera()),
-                 scene_.textures[texture], first, last, static_cast<float>(dither), sums);
+        shadeRun(attributesOf(surface, instance, v, rasterizer_.camera()), scene_.textures[texture],
+                 first, last, static_cast<float>(dither), sums);
       }
       first = last + 1;
     }
@@ -251,8 +253,7 @@ void Renderer::fillMaps(double time, const std::vector<Instance>& instances,
       const Vector3d ray((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0);
       const double inverse_depth = plane.dot(ray);
       frame.depth.at<float>(v, u) = static_cast<float>(1.0 / inverse_depth);
-      frame.facing.at<float>(v, u) =
-          static_cast<float>(inverse_depth / (plane_norm * ray.norm()));
+      frame.facing.at<float>(v, u) = static_cast<float>(inverse_depth / (plane_norm * ray.norm()));
       const int mover = instances[surface.instance].mover;
       if (mover < 0) {
         continue;

@@ -15,17 +15,18 @@
 namespace hmcdyn::synthesize {
 
 struct RenderOptions {
-  int width = 640;                               ///< (px)
-  int height = 480;                              ///< (px)
+  int width = 640;                                   ///< (px)
+  int height = 480;                                  ///< (px)
   PinholeCamera camera{535.4, 539.2, 320.1, 247.6};  ///< Pixel (0, 0) is a pixel's centre.
   double exposure = 0.0;       ///< Time the shutter is open (s), around the frame's time.
   double moving_speed = 0.01;  ///< What is faster relative to the world is moving (m/s).
 };
 
 /// Values of `mask/` pictures.
-inline constexpr std::uint8_t kMaskStatic = 0;      ///< The room.
-inline constexpr std::uint8_t kMaskStanding = 128;  ///< A person, or a thing that can move, at rest.
-inline constexpr std::uint8_t kMaskMoving = 255;    ///< Faster than RenderOptions::moving_speed.
+inline constexpr std::uint8_t kMaskStatic = 0;  ///< The room.
+inline constexpr std::uint8_t kMaskStanding =
+    128;                                          ///< A person, or a thing that can move, at rest.
+inline constexpr std::uint8_t kMaskMoving = 255;  ///< Faster than RenderOptions::moving_speed.
 
 /// What the scene is at the middle of the exposure, free of noise. All maps are of the image's
 /// size and hold for the ray through the pixel's centre; only the colour is integrated over the
@@ -51,7 +52,8 @@ class Renderer {
   RenderedFrame render(double time);
 
  private:
-  std::vector<Instance> instancesAt(double time, const std::vector<std::vector<float>>& light) const;
+  std::vector<Instance> instancesAt(double time,
+                                    const std::vector<std::vector<float>>& light) const;
   void accumulateColor(double dither);
   void fillMaps(double time, const std::vector<Instance>& instances, RenderedFrame& frame) const;
 

@@ -158,8 +158,12 @@ void furnishWalls(Furnisher& f, const Palette& palette, TextureLibrary& textures
   f.backpack(placed(-2.4f, 2.35f, 0, 0.6f), false);
   f.officeChair(placed(1.75f, 2.1f, 0, 0.5f), false);
   f.stepLadder(placed(3.3f, -1.0f, 0, 1.2f), 1.4f);
-  f.cable({{-1.6f, 0.8f, 0.01f}, {-2.2f, 0.5f, 0.01f}, {-2.5f, 1.2f, 0.01f}, {-3.2f, 1.4f, 0.01f},
-           {-3.95f, 2.0f, 0.01f}}, 0.008f);
+  f.cable({{-1.6f, 0.8f, 0.01f},
+           {-2.2f, 0.5f, 0.01f},
+           {-2.5f, 1.2f, 0.01f},
+           {-3.2f, 1.4f, 0.01f},
+           {-3.95f, 2.0f, 0.01f}},
+          0.008f);
 }
 
 }  // namespace
@@ -170,11 +174,13 @@ RoomBounds furnishOffice(Scene& scene, std::uint64_t seed, bool with_occluders) 
   addLamps(scene, bounds);
   Furnisher f(scene.room, scene.lighting, palette, seed);
   ShellTextures shell;
-  shell.floor = scene.textures.add(
-      [s = mixBits(seed + 11)] { return paint::carpet({118, 112, 104}, s); });
+  shell.floor = scene.textures.add([s = mixBits(seed + 11)] {
+    return paint::carpet({118, 112, 104}, s);
+  });
   shell.floor_tile = 2.0f;
-  shell.wall = scene.textures.add(
-      [s = mixBits(seed + 12)] { return paint::plaster({205, 218, 222}, 1.0, s); });
+  shell.wall = scene.textures.add([s = mixBits(seed + 12)] {
+    return paint::plaster({205, 218, 222}, 1.0, s);
+  });
   shell.ceiling = scene.textures.add([s = mixBits(seed + 13)] { return paint::ceilingTiles(s); });
   addShell(f, bounds, shell);
   hangLamps(f, scene, palette);
@@ -193,10 +199,12 @@ RoomBounds furnishBareOffice(Scene& scene, std::uint64_t seed) {
   addLamps(scene, bounds);
   Furnisher f(scene.room, scene.lighting, palette, seed);
   ShellTextures shell;
-  shell.floor = scene.textures.add(
-      [s = mixBits(seed + 11)] { return paint::plaster({120, 125, 128}, 0.25, s); });
-  shell.wall = scene.textures.add(
-      [s = mixBits(seed + 12)] { return paint::plaster({205, 215, 218}, 0.2, s); });
+  shell.floor = scene.textures.add([s = mixBits(seed + 11)] {
+    return paint::plaster({120, 125, 128}, 0.25, s);
+  });
+  shell.wall = scene.textures.add([s = mixBits(seed + 12)] {
+    return paint::plaster({205, 215, 218}, 0.2, s);
+  });
   shell.ceiling = shell.wall;
   addShell(f, bounds, shell);
   hangLamps(f, scene, palette);

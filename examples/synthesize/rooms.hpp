@@ -21,8 +21,8 @@ RoomBounds furnishOffice(Scene& scene, std::uint64_t seed, bool with_occluders =
 /// The same with blank walls, a plain floor and almost nothing on the desks.
 RoomBounds furnishBareOffice(Scene& scene, std::uint64_t seed);
 
-/// A hall for motion capture, 7.2 m by 6.4 m, with free floor in the middle, things along the walls,
-/// and the broom, cardboard boxes and chair of the paper's own recordings.
+/// A hall for motion capture, 7.2 m by 6.4 m, with free floor in the middle, things along the
+/// walls, and the broom, cardboard boxes and chair of the paper's own recordings.
 RoomBounds furnishHall(Scene& scene, std::uint64_t seed);
 
 }  // namespace hmcdyn::synthesize

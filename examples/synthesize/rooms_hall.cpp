@@ -14,12 +14,15 @@ void addShell(Furnisher& f, Scene& scene, const RoomBounds& bounds, std::uint64_
   const Vector3f low = bounds.min().cast<float>();
   const Vector3f high = bounds.max().cast<float>();
   const Vector3f size = high - low;
-  const int floor = scene.textures.add(
-      [s = mixBits(seed + 31)] { return paint::concrete({135, 142, 146}, s); });
-  const int wood = scene.textures.add(
-      [s = mixBits(seed + 32)] { return paint::woodPlanks({95, 135, 165}, s); });
-  const int wall = scene.textures.add(
-      [s = mixBits(seed + 33)] { return paint::plaster({196, 204, 206}, 1.0, s); });
+  const int floor = scene.textures.add([s = mixBits(seed + 31)] {
+    return paint::concrete({135, 142, 146}, s);
+  });
+  const int wood = scene.textures.add([s = mixBits(seed + 32)] {
+    return paint::woodPlanks({95, 135, 165}, s);
+  });
+  const int wall = scene.textures.add([s = mixBits(seed + 33)] {
+    return paint::plaster({196, 204, 206}, 1.0, s);
+  });
   constexpr float kCell = 0.5f;
   Mesh shell;
   addQuad(shell, {low.x(), high.y(), 0}, {size.x(), 0, 0}, {0, -size.y(), 0},
@@ -42,11 +45,13 @@ void addRoof(Furnisher& f, const Scene& scene, const Palette& palette, const Roo
   const Material metal{palette.dark_metal, 0.5f, {0, 0}, {1, 1}};
   Mesh girders;
   for (const float y : {-2.6f, -1.2f, 0.2f, 1.6f}) {
-    addBox(girders, placed(0, y, top - 0.3f), {width, 0.08f, 0.06f}, BoxMaterials::all(metal), 1.0f);
+    addBox(girders, placed(0, y, top - 0.3f), {width, 0.08f, 0.06f}, BoxMaterials::all(metal),
+           1.0f);
     addBox(girders, placed(0, y, top - 0.05f), {width, 0.08f, 0.06f}, BoxMaterials::all(metal),
            1.0f);
     for (float x = -0.5f * width; x < 0.5f * width - 0.3f; x += 0.6f) {
-      addCylinder(girders, {x, y, top - 0.3f}, {x + 0.3f, y, top - 0.05f}, 0.015f, 0.015f, 6, metal);
+      addCylinder(girders, {x, y, top - 0.3f}, {x + 0.3f, y, top - 0.05f}, 0.015f, 0.015f, 6,
+                  metal);
       addCylinder(girders, {x + 0.3f, y, top - 0.05f}, {x + 0.6f, y, top - 0.3f}, 0.015f, 0.015f, 6,
                   metal);
     }
@@ -113,10 +118,19 @@ RoomBounds furnishHall(Scene& scene, std::uint64_t seed) {
   f.keyboard(placed(-2.9f, -1.3f, 0.74f, 1.5708f));
   f.clutter(placed(-3.05f, -1.3f, 0.74f, 1.5708f), 1.3f, 0.5f, 5);
   f.bookPile(placed(-3.0f, 2.1f, 1.2f), 4);
-  f.cable({{-3.1f, -0.6f, 0.01f}, {-2.0f, 0.0f, 0.01f}, {-1.0f, 0.4f, 0.01f}, {0.4f, 0.5f, 0.01f},
-           {1.6f, 1.3f, 0.01f}, {3.1f, 1.5f, 0.01f}}, 0.012f);
-  f.cable({{3.4f, -2.0f, 0.01f}, {2.2f, -0.9f, 0.01f}, {0.9f, -0.2f, 0.01f}, {-0.6f, 0.9f, 0.01f},
-           {-1.1f, 2.3f, 0.01f}}, 0.01f);
+  f.cable({{-3.1f, -0.6f, 0.01f},
+           {-2.0f, 0.0f, 0.01f},
+           {-1.0f, 0.4f, 0.01f},
+           {0.4f, 0.5f, 0.01f},
+           {1.6f, 1.3f, 0.01f},
+           {3.1f, 1.5f, 0.01f}},
+          0.012f);
+  f.cable({{3.4f, -2.0f, 0.01f},
+           {2.2f, -0.9f, 0.01f},
+           {0.9f, -0.2f, 0.01f},
+           {-0.6f, 0.9f, 0.01f},
+           {-1.1f, 2.3f, 0.01f}},
+          0.01f);
   return bounds;
 }
 

@@ -23,7 +23,8 @@ struct SceneOptions {
   std::uint64_t seed = 1;  ///< Of pictures, clothes, small movements and the camera's hand.
   double seconds = 10.0;   ///< How long people must have something to do (s).
   int threads = 1;         ///< For painting; the result does not depend on it.
-  int max_texture = 1024;  ///< Largest side of a surface's picture (px); less is faster.
+  int max_texture = 1024;  ///< Largest side of a surface's picture (px).
+  bool paint = true;       ///< false: geometry and motion only, not fit for a Renderer.
 };
 
 /// A scene, ready to render, and where in it a camera may be.

@@ -94,9 +94,9 @@ cv::Mat Sensor::measureColor(const cv::Mat& color, std::uint64_t index, double t
       const int factor = vignette[u] * gain_fixed;
       for (int channel = 0; channel < 3; ++channel, ++n) {
         const int level = std::min(255, (row[3 * u + channel] * factor) >> 16);
-        const float noisy = static_cast<float>(level) + 0.5f +
-                            deviation[static_cast<std::size_t>(level)] *
-                                normals_[n & (kNormals - 1)];
+        const float noisy =
+            static_cast<float>(level) + 0.5f +
+            deviation[static_cast<std::size_t>(level)] * normals_[n & (kNormals - 1)];
         row[3 * u + channel] = static_cast<std::uint8_t>(std::clamp(noisy, 0.0f, 255.0f));
       }
     }
@@ -141,11 +141,12 @@ cv::Mat Sensor::measureDepth(const RenderedFrame& frame, std::uint64_t index) co
   const cv::Mat shadow = shadowOf(truth);
   Random random(seed_, 5000000 + index);
   // Disparities come from windows of several pixels, so neighbours share their error.
+  constexpr float kUnitVariance = 2.586f;  // makes up for the smoothing: 1 / sum of squared weights
   cv::Mat noise(truth.size(), CV_32FC1);
   auto n = static_cast<std::size_t>(random.bits());
   for (int v = 0; v < noise.rows; ++v, n += static_cast<std::size_t>(random.bits())) {
     for (int u = 0; u < noise.cols; ++u, ++n) {
-      noise.at<float>(v, u) = 1.9f * normals_[n & (kNormals - 1)];
+      noise.at<float>(v, u) = kUnitVariance * normals_[n & (kNormals - 1)];
     }
   }
   cv::GaussianBlur(noise, noise, {3, 3}, 0.8);
@@ -154,8 +155,8 @@ cv::Mat Sensor::measureDepth(const RenderedFrame& frame, std::uint64_t index) co
   for (int v = 0; v < truth.rows; ++v, n += static_cast<std::size_t>(random.bits())) {
     for (int u = 0; u < truth.cols; ++u, n += 3) {
       const auto lateral = [&](std::size_t i) {
-        return static_cast<int>(std::lround(o.lateral * static_cast<double>(
-                                                            normals_[(n + i) & (kNormals - 1)])));
+        return static_cast<int>(
+            std::lround(o.lateral * static_cast<double>(normals_[(n + i) & (kNormals - 1)])));
       };
       const int x = std::clamp(u + lateral(0), 0, truth.cols - 1);
       const int y = std::clamp(v + lateral(1), 0, truth.rows - 1);
@@ -177,7 +178,8 @@ cv::Mat Sensor::measureDepth(const RenderedFrame& frame, std::uint64_t index) co
       const double beyond = z - o.axial_range;
       const double deviation = o.axial_base + o.axial_growth * beyond * beyond +
                                0.0001 / std::sqrt(z) * grazing * grazing;
-      const double noisy = std::max(0.1, z + deviation * static_cast<double>(noise.at<float>(v, u)));
+      const double noisy =
+          std::max(0.1, z + deviation * static_cast<double>(noise.at<float>(v, u)));
       const double disparity =
           std::round(o.disparity_constant / noisy / o.disparity_step) * o.disparity_step;
       depth.at<std::uint16_t>(v, u) = toFileDepth(o.disparity_constant / disparity);

@@ -116,9 +116,7 @@ class TextFile {
   std::ofstream file_;
 };
 
-double stampOf(std::size_t frame) {
-  return kFirstStamp + static_cast<double>(frame) / kFrameRate;
-}
+double stampOf(std::size_t frame) { return kFirstStamp + static_cast<double>(frame) / kFrameRate; }
 
 std::string stampText(std::size_t frame) {
   std::array<char, 32> text{};
@@ -169,11 +167,10 @@ std::vector<DetectionBox> boxesOf(const RenderedFrame& frame, const Scene& scene
       return static_cast<float>(std::clamp(x, 0.0, size - 1.0));
     };
     const bool faulty = options.box_drop > 0.0 || options.box_jitter > 0.0;
-    boxes.push_back({clamped(e.u_min + shift[0], options.width),
-                     clamped(e.v_min + shift[1], options.height),
-                     clamped(e.u_max + shift[2], options.width),
-                     clamped(e.v_max + shift[3], options.height), kPersonClassId,
-                     faulty ? static_cast<float>(certainty) : 1.0f});
+    boxes.push_back(
+        {clamped(e.u_min + shift[0], options.width), clamped(e.v_min + shift[1], options.height),
+         clamped(e.u_max + shift[2], options.width), clamped(e.v_max + shift[3], options.height),
+         kPersonClassId, faulty ? static_cast<float>(certainty) : 1.0f});
   }
   return boxes;
 }
@@ -190,8 +187,9 @@ void writeLists(const SequenceOptions& options, const std::vector<FrameRecord>& 
   depth.line("# depth maps\n# rendered scene '%s', seed %llu\n# timestamp filename",
              options.scene.c_str(), static_cast<unsigned long long>(options.seed));
   truth.line("# ground truth trajectory, camera in the world\n# timestamp tx ty tz qx qy qz qw");
-  boxes.line("# boxes of people, borders included (px); class 0 = person\n"
-             "# timestamp class x_min y_min x_max y_max score");
+  boxes.line(
+      "# boxes of people, borders included (px); class 0 = person\n"
+      "# timestamp class x_min y_min x_max y_max score");
   for (std::size_t i = 0; i < records.size(); ++i) {
     const std::string stamp = stampText(i);
     const char* s = stamp.c_str();

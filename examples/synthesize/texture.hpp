@@ -56,12 +56,11 @@ class Texture {
 
   /// Two channels in one multiplication each; the weights add up to 256.
   static PackedColor blend(PackedColor a, PackedColor b, PackedColor c, PackedColor d,
-                           std::uint32_t wa, std::uint32_t wb, std::uint32_t wc,
-                           std::uint32_t wd) {
+                           std::uint32_t wa, std::uint32_t wb, std::uint32_t wc, std::uint32_t wd) {
     constexpr std::uint32_t kOuter = 0x00ff00ffU;
     constexpr std::uint32_t kInner = 0x0000ff00U;
-    const std::uint32_t outer = (a & kOuter) * wa + (b & kOuter) * wb + (c & kOuter) * wc +
-                                (d & kOuter) * wd + 0x00800080U;
+    const std::uint32_t outer =
+        (a & kOuter) * wa + (b & kOuter) * wb + (c & kOuter) * wc + (d & kOuter) * wd + 0x00800080U;
     const std::uint32_t inner = ((a & kInner) >> 8U) * wa + ((b & kInner) >> 8U) * wb +
                                 ((c & kInner) >> 8U) * wc + ((d & kInner) >> 8U) * wd + 0x80U;
     return ((outer >> 8U) & kOuter) | (inner & kInner);

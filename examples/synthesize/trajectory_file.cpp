@@ -54,9 +54,9 @@ Isometry3d between(const StampedPose& a, const StampedPose& b, double time) {
 }
 
 Isometry3d interpolated(const std::vector<StampedPose>& poses, double time) {
-  const auto above = std::upper_bound(
-      poses.begin() + 1, poses.end() - 1, time,
-      [](double t, const StampedPose& pose) { return t < pose.time; });
+  const auto above =
+      std::upper_bound(poses.begin() + 1, poses.end() - 1, time,
+                       [](double t, const StampedPose& pose) { return t < pose.time; });
   return between(*(above - 1), *above, time);
 }
 
