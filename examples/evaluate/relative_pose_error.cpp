@@ -59,29 +59,30 @@ std::size_t closestIndex(const std::vector<double>& sorted, double target) {
   return static_cast<std::size_t>(first_below - sorted.begin());
 }
 
+/// What a motion from one pose to the next adds to the distance along a trajectory.
+double stepOf(const Eigen::Isometry3d& motion, DeltaUnit unit) {
+  switch (unit) {
+    case DeltaUnit::kMetres:
+      return motion.translation().norm();
+    case DeltaUnit::kRadians:
+      return angleOf(motion);
+    case DeltaUnit::kDegrees:
+      return angleOf(motion) * kDegreesPerRadian;
+    default:  // kFrames; kSeconds needs no steps
+      return 1.0;
+  }
+}
+
 /// How far along the trajectory each pose is, in the unit of delta.
 std::vector<double> distancesAlong(const Trajectory& trajectory, DeltaUnit unit) {
-  std::vector<double> distances;
+  if (unit == DeltaUnit::kSeconds) {
+    return timestampsOf(trajectory);
+  }
+  std::vector<double> distances{0.0};
   distances.reserve(trajectory.size());
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    if (unit == DeltaUnit::kSeconds) {
-      distances.push_back(trajectory[i].timestamp);
-      continue;
-    }
-    if (i == 0) {
-      distances.push_back(0.0);
-      continue;
-    }
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const Eigen::Isometry3d motion = trajectory[i - 1].pose.inverse() * trajectory[i].pose;
-    double step = 1.0;  // kFrames
-    if (unit == DeltaUnit::kMetres) {
-      step = motion.translation().norm();
-    } else if (unit == DeltaUnit::kRadians) {
-      step = angleOf(motion);
-    } else if (unit == DeltaUnit::kDegrees) {
-      step = angleOf(motion) * kDegreesPerRadian;
-    }
-    distances.push_back(distances.back() + step);
+    distances.push_back(distances.back() + stepOf(motion, unit));
   }
   return distances;
 }

@@ -13,6 +13,16 @@ namespace hmcdyn::evaluate::test {
 
 /// A test with a folder of its own, which is gone afterwards.
 class TemporaryFolder : public testing::Test {
+ public:
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  TemporaryFolder(TemporaryFolder&&) = delete;
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+  ~TemporaryFolder() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
  protected:
   TemporaryFolder() {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
@@ -21,14 +31,6 @@ class TemporaryFolder : public testing::Test {
                std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
   }
-  ~TemporaryFolder() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  TemporaryFolder(TemporaryFolder&&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
 
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 

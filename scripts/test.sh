@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what is missing, configures, builds and runs every test.
+set -uo pipefail
+
+usage() {
+  cat <<USAGE
+Usage: ${0##*/} [--preset NAME] [--jobs N] [--no-install]
+
+Installs what is missing, configures, builds and runs every test. The last line says how it went.
+
+  --preset NAME   preset of CMakePresets.json: ci (default), debug, release, asan-ubsan, tsan, bench
+  --jobs N        compile and test jobs at a time (default: number of processors, $(nproc))
+  --no-install    do not look for missing packages
+  --help          this text
+USAGE
+}
+
+usage_error() {
+  echo "${0##*/}: $1" >&2
+  usage >&2
+  exit 2
+}
+
+preset=ci
+jobs=$(nproc)
+install=true
+while (($# > 0)); do
+  case "$1" in
+    --preset | --jobs)
+      (($# > 1)) || usage_error "$1 needs a value"
+      if [[ $1 == --preset ]]; then preset=$2; else jobs=$2; fi
+      shift
+      ;;
+    --no-install) install=false ;;
+    --help | -h) usage && exit 0 ;;
+    *) usage_error "unknown argument $1" ;;
+  esac
+  shift
+done
+[[ $jobs =~ ^[1-9][0-9]*$ ]] || usage_error "--jobs is '$jobs'; expected a number above 0"
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
+results=$PWD/build/$preset/test_results.xml
+
+finish() {
+  printf 'hmcdyn tests (preset %s, %d min %d s): %s\n' "$preset" $((SECONDS / 60)) \
+    $((SECONDS % 60)) "$2"
+  exit "$1"
+}
+
+# An attribute of the results' first element, <testsuite tests="..." failures="..." ...>.
+result() {
+  grep -m 1 -oE "\b$1=\"[0-9]+\"" "$results" | grep -oE '[0-9]+'
+}
+
+if $install; then
+  scripts/install_dependencies.sh || finish 1 "dependencies are missing"
+fi
+cmake --preset "$preset" || finish 1 "configuring failed"
+cmake --build --preset "$preset" --parallel "$jobs" || finish 1 "building failed"
+
+rm -f "$results"
+ctest --preset "$preset" --parallel "$jobs" --no-tests=error --output-junit "$results"
+status=$?
+[[ -f $results ]] || finish 1 "no test ran"
+total=$(result tests)
+failed=$(result failures)
+skipped=$(($(result skipped) + $(result disabled)))
+finish "$status" "$((total - failed - skipped)) passed, $failed failed, $skipped skipped"
