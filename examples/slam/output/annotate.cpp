@@ -3,112 +3,207 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "slam/detection/coco_classes.hpp"
-
 namespace hmcdyn::slam {
 namespace {
 
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.42;
-const int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
-cv::Scalar colorOf(PointLabel label) {
-  switch (label) {
-    case PointLabel::kStatic:
-      return {80, 200, 60};
-    case PointLabel::kSuspect:
-      return {0, 220, 255};
-    case PointLabel::kDynamic:
-      return {40, 40, 235};
-    case PointLabel::kUnmatched:
-      return {235, 150, 40};
-  }
-  return {255, 255, 255};
-}
+// BGR.
+const cv::Scalar kGreen(60, 220, 60);
+const cv::Scalar kYellow(0, 230, 255);
+const cv::Scalar kRed(50, 50, 255);
+const cv::Scalar kBlueGrey(230, 170, 120);
+const cv::Scalar kBlack(0, 0, 0);
+const cv::Scalar kWhite(255, 255, 255);
+const cv::Scalar kStrip(32, 32, 32);
 
-/// Qualitative palette (BGR), told apart on any background.
-cv::Scalar colorOfCluster(int cluster) {
-  static const std::array<cv::Scalar, 8> kPalette = {
-      cv::Scalar(194, 99, 255), cv::Scalar(255, 255, 80),  cv::Scalar(0, 140, 255),
-      cv::Scalar(255, 255, 255), cv::Scalar(180, 105, 0),  cv::Scalar(170, 240, 170),
-      cv::Scalar(130, 0, 130),  cv::Scalar(0, 90, 130)};
+constexpr std::array<PointLabel, 4> kLabels{PointLabel::kStatic, PointLabel::kSuspect,
+                                            PointLabel::kDynamic, PointLabel::kUnmatched};
+
+/// Colours told apart from each other and from the labels' (after Brewer's qualitative sets).
+cv::Scalar clusterColour(int cluster) {
+  static const std::array<cv::Scalar, 8> kPalette{{{200, 60, 230},
+                                                   {255, 200, 0},
+                                                   {0, 128, 255},
+                                                   {255, 255, 170},
+                                                   {90, 90, 160},
+                                                   {203, 192, 255},
+                                                   {255, 100, 100},
+                                                   {0, 110, 0}}};
   return kPalette[static_cast<std::size_t>(cluster) % kPalette.size()];
 }
 
-/// Text on a dark ground, legible on any picture.
-void drawText(cv::Mat& picture, const std::string& text, cv::Point left_base,
-              const cv::Scalar& color) {
+cv::Scalar labelColour(PointLabel label) {
+  switch (label) {
+    case PointLabel::kStatic:
+      return kGreen;
+    case PointLabel::kSuspect:
+      return kYellow;
+    case PointLabel::kDynamic:
+      return kRed;
+    case PointLabel::kUnmatched:
+      break;
+  }
+  return kBlueGrey;
+}
+
+void drawMarker(cv::Mat& canvas, cv::Point at, PointLabel label) {
+  const cv::Scalar colour = labelColour(label);
+  switch (label) {
+    case PointLabel::kDynamic:
+      cv::drawMarker(canvas, at, kBlack, cv::MARKER_TILTED_CROSS, 8, 4);
+      cv::drawMarker(canvas, at, colour, cv::MARKER_TILTED_CROSS, 8, 2);
+      break;
+    case PointLabel::kSuspect:
+      cv::rectangle(canvas, at - cv::Point(3, 3), at + cv::Point(3, 3), kBlack, cv::FILLED);
+      cv::rectangle(canvas, at - cv::Point(2, 2), at + cv::Point(2, 2), colour, cv::FILLED);
+      break;
+    default:
+      cv::circle(canvas, at, 3, kBlack, cv::FILLED);
+      cv::circle(canvas, at, 2, colour, cv::FILLED);
+      break;
+  }
+}
+
+/// Text on a dark plate, its lower left corner at `at`; returns the plate's right end.
+int drawText(cv::Mat& canvas, const std::string& text, cv::Point at, const cv::Scalar& colour,
+             const cv::Scalar& plate) {
   int baseline = 0;
   const cv::Size size = cv::getTextSize(text, kFont, kFontScale, 1, &baseline);
-  cv::Rect ground(left_base.x - 2, left_base.y - size.height - 2, size.width + 4,
-                  size.height + baseline + 3);
-  ground &= cv::Rect({}, picture.size());
-  if (!ground.empty()) {
-    cv::Mat area = picture(ground);
-    area.convertTo(area, -1, 0.35);
+  cv::rectangle(canvas, {at.x, at.y - size.height - 5, size.width + 6, size.height + 8}, plate,
+                cv::FILLED);
+  cv::putText(canvas, text, {at.x + 3, at.y - 1}, kFont, kFontScale, colour, 1, cv::LINE_AA);
+  return at.x + size.width + 6;
+}
+
+std::string className(int id, const std::vector<std::string>& names) {
+  return id >= 0 && static_cast<std::size_t>(id) < names.size()
+             ? names[static_cast<std::size_t>(id)]
+             : fmt::format("class {}", id);
+}
+
+/// False for an inverted box and one with a NaN.
+bool isDrawable(const DetectionBox& box) {
+  return box.x_min <= box.x_max && box.y_min <= box.y_max;
+}
+
+/// A corner in whole pixels. Just outside the picture is as good as far outside, and does not
+/// overflow.
+cv::Point clamped(const cv::Mat& picture, float x, float y) {
+  constexpr float kOutside = 10.0f;
+  return {cvRound(std::clamp(x, -kOutside, static_cast<float>(picture.cols) + kOutside)),
+          cvRound(std::clamp(y, -kOutside, static_cast<float>(picture.rows) + kOutside))};
+}
+
+void drawBox(cv::Mat& picture, const DetectionBox& box, bool dynamic) {
+  cv::rectangle(picture, clamped(picture, box.x_min, box.y_min),
+                clamped(picture, box.x_max, box.y_max), dynamic ? kRed : kGreen, 2);
+}
+
+void drawBoxLabel(cv::Mat& picture, const DetectionBox& box, bool dynamic,
+                  const std::vector<std::string>& names) {
+  const cv::Point corner = clamped(picture, box.x_min, box.y_min);
+  drawText(picture, fmt::format("{} {:.2f}", className(box.class_id, names), box.score),
+           {std::max(0, corner.x - 1), std::max(16, corner.y)}, kBlack, dynamic ? kRed : kGreen);
+}
+
+std::string statusLine(const AnnotationText& text, std::size_t points,
+                       Span<const std::uint8_t> box_is_dynamic) {
+  const auto dynamic = std::count_if(box_is_dynamic.begin(), box_is_dynamic.end(),
+                                     [](std::uint8_t flag) { return flag != 0; });
+  return fmt::format("frame {}  model {}  {} points  {}/{} boxes dynamic", text.frame,
+                     text.model.empty() ? "none" : text.model, points, dynamic,
+                     box_is_dynamic.size());
+}
+
+/// Status line and legend, two lines.
+void drawStrip(cv::Mat strip, const std::string& status, Span<const PointLabel> labels,
+               bool clustered) {
+  constexpr int kGap = 14;
+  strip.setTo(kStrip);
+  int x = drawText(strip, status, {4, 18}, kWhite, kStrip) + kGap;
+  for (const auto& [name, colour] : {std::pair("dynamic", kRed), std::pair("other", kGreen)}) {
+    cv::rectangle(strip, {x, 8, 12, 9}, colour, 2);
+    x = drawText(strip, name, {x + kGap, 18}, colour, kStrip) + kGap;
   }
-  cv::putText(picture, text, left_base, kFont, kFontScale, color, 1, cv::LINE_AA);
-}
-
-void drawBox(cv::Mat& picture, const DetectionBox& box, bool is_dynamic) {
-  const cv::Scalar color = is_dynamic ? colorOf(PointLabel::kDynamic) : colorOf(PointLabel::kStatic);
-  const cv::Point upper_left(cvRound(box.x_min), cvRound(box.y_min));
-  cv::rectangle(picture, upper_left, cv::Point(cvRound(box.x_max), cvRound(box.y_max)), color, 2);
-  const bool is_known = box.class_id >= 0 && box.class_id < kCocoClassCount;
-  const std::string name =
-      is_known ? cocoClassName(box.class_id) : "class " + std::to_string(box.class_id);
-  drawText(picture, fmt::format("{} {:.2f}{}", name, box.score, is_dynamic ? " moves" : ""),
-           cv::Point(std::max(2, upper_left.x + 3), std::max(12, upper_left.y + 14)), color);
-}
-
-void drawLegend(cv::Mat& picture) {
-  int x = 6;
-  for (const PointLabel label : {PointLabel::kStatic, PointLabel::kSuspect, PointLabel::kDynamic,
-                                 PointLabel::kUnmatched}) {
-    drawText(picture, toString(label), {x, 14}, colorOf(label));
-    x += 10 + cv::getTextSize(toString(label), kFont, kFontScale, 1, nullptr).width;
+  x = 12;
+  for (const PointLabel label : kLabels) {
+    drawMarker(strip, {x, 33}, label);
+    const auto count = std::count(labels.begin(), labels.end(), label);
+    x = drawText(strip, fmt::format("{} {}", toString(label), count), {x + 6, 38},
+                 labelColour(label), kStrip) +
+        kGap;
   }
-  drawText(picture, "ring: cluster", {x, 14}, {255, 255, 255});
+  if (clustered) {
+    for (int i = 0; i < 3; ++i, x += kGap) {
+      cv::circle(strip, {x, 33}, 6, clusterColour(i), 1, cv::LINE_AA);
+    }
+    drawText(strip, "ring: cluster", {x - 6, 38}, kWhite, kStrip);
+  }
 }
 
-void check(const cv::Mat& bgr, const Annotation& annotation) {
-  checkKeyPoints(annotation.points);
-  const std::size_t n = annotation.points.size();
+void checkInput(const cv::Mat& bgr, const KeyPointsView& points, std::size_t labels,
+                std::size_t clusters, std::size_t boxes, std::size_t flags) {
   if (bgr.empty() || bgr.type() != CV_8UC3) {
-    throw std::invalid_argument("annotateFrame: expected a colour image (CV_8UC3)");
+    throw std::invalid_argument("annotate: the image is " +
+                                (bgr.empty() ? "empty" : cv::typeToString(bgr.type())) +
+                                "; expected CV_8UC3");
   }
-  if (annotation.label.size() != n || annotation.cluster.size() != n ||
-      annotation.box_is_dynamic.size() != annotation.boxes.size()) {
+  checkKeyPoints(points);
+  if (labels != points.size() || clusters != points.size()) {
     throw std::invalid_argument(
-        fmt::format("annotateFrame: {} points, {} labels, {} clusters; {} boxes, {} flags; expected "
-                    "equal sizes",
-                    n, annotation.label.size(), annotation.cluster.size(), annotation.boxes.size(),
-                    annotation.box_is_dynamic.size()));
+        fmt::format("annotate: {} points, {} labels, {} clusters; expected equal sizes",
+                    points.size(), labels, clusters));
+  }
+  if (flags != boxes) {
+    throw std::invalid_argument(
+        fmt::format("annotate: {} boxes, {} dynamic flags; expected equal sizes", boxes, flags));
   }
 }
 
 }  // namespace
 
-cv::Mat annotateFrame(const cv::Mat& bgr, const Annotation& annotation) {
-  check(bgr, annotation);
-  cv::Mat picture = bgr.clone();
-  for (std::size_t b = 0; b < annotation.boxes.size(); ++b) {
-    drawBox(picture, annotation.boxes[b], annotation.box_is_dynamic[b] != 0);
-  }
-  for (std::size_t i = 0; i < annotation.points.size(); ++i) {
-    const cv::Point2f pixel(annotation.points.u[i], annotation.points.v[i]);
-    if (annotation.cluster[i] >= 0) {
-      cv::circle(picture, pixel, 4, colorOfCluster(annotation.cluster[i]), 1, cv::LINE_AA);
+cv::Mat annotateFrame(const cv::Mat& bgr, KeyPointsView points, Span<const PointLabel> labels,
+                      Span<const int> clusters, Span<const DetectionBox> boxes,
+                      Span<const std::uint8_t> box_is_dynamic, const AnnotationText& text) {
+  checkInput(bgr, points, labels.size(), clusters.size(), boxes.size(), box_is_dynamic.size());
+  cv::Mat canvas(bgr.rows + kAnnotationRows, bgr.cols, CV_8UC3);
+  cv::Mat picture = canvas.rowRange(0, bgr.rows);
+  bgr.copyTo(picture);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (isDrawable(boxes[i])) {
+      drawBox(picture, boxes[i], box_is_dynamic[i] != 0);
     }
-    cv::circle(picture, pixel, 2, colorOf(annotation.label[i]), cv::FILLED, cv::LINE_AA);
   }
-  drawLegend(picture);
-  drawText(picture, annotation.status, {6, picture.rows - 8}, {255, 255, 255});
-  return picture;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const cv::Rect2f frame(0.0f, 0.0f, static_cast<float>(bgr.cols), static_cast<float>(bgr.rows));
+    if (!frame.contains({points.u[i], points.v[i]})) {
+      continue;  // NaN is nowhere, too
+    }
+    const cv::Point at(cvRound(points.u[i]), cvRound(points.v[i]));
+    if (clusters[i] >= 0) {
+      cv::circle(picture, at, 6, clusterColour(clusters[i]), 1, cv::LINE_AA);
+    }
+    drawMarker(picture, at, labels[i]);
+  }
+  for (std::size_t i = 0; i < boxes.size(); ++i) {  // on top of the points
+    if (isDrawable(boxes[i])) {
+      drawBoxLabel(picture, boxes[i], box_is_dynamic[i] != 0, text.class_names);
+    }
+  }
+  const bool clustered =
+      std::any_of(clusters.begin(), clusters.end(), [](int cluster) { return cluster >= 0; });
+  drawStrip(canvas.rowRange(bgr.rows, canvas.rows), statusLine(text, points.size(), box_is_dynamic),
+            labels, clustered);
+  return canvas;
 }
 
 }  // namespace hmcdyn::slam

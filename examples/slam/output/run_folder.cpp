@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/output/run_folder.hpp"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -14,101 +14,145 @@
 namespace hmcdyn::slam {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file) {
-  const std::string reason = errno != 0 ? std::strerror(errno) : "unknown error";
-  throw std::runtime_error(file.string() + ": cannot be written: " + reason);
+constexpr const char* kTrajectoryFile = "trajectory.txt";
+constexpr const char* kTimingsFile = "timings.csv";
+constexpr const char* kKeyPointsFile = "keypoints.csv";
+constexpr const char* kSummaryFile = "summary.json";
+
+/// Fixed decimals whatever the locale, and NaN without its sign.
+std::string number(double value, int decimals) {
+  return std::isnan(value) ? "nan" : fmt::format("{:.{}f}", value, decimals);
+}
+
+void checkStages(const std::vector<std::string>& stages) {
+  for (auto stage = stages.begin(); stage != stages.end(); ++stage) {
+    if (stage->empty() || stage->find_first_of(",\"\r\n") != std::string::npos ||
+        std::find(stages.begin(), stage, *stage) != stage) {
+      throw std::invalid_argument("timings: stage name \"" + *stage +
+                                  "\"; expected names without commas, quotes and line breaks, "
+                                  "none empty, each once");
+    }
+  }
+}
+
+void checkSizes(const LabelledKeyPoints& frame) {
+  checkKeyPoints(frame.points);
+  const std::size_t n = frame.points.size();
+  if (frame.distances.size() != n || frame.clusters.size() != n || frame.labels.size() != n ||
+      frame.weights.size() != n) {
+    throw std::invalid_argument(
+        fmt::format("key points: {} points, {} distances, {} clusters, {} labels, {} weights; "
+                    "expected equal sizes",
+                    n, frame.distances.size(), frame.clusters.size(), frame.labels.size(),
+                    frame.weights.size()));
+  }
 }
 
 }  // namespace
 
-LineFile::LineFile(std::filesystem::path file) : file_(std::move(file)) {
-  errno = 0;
-  stream_.open(file_, std::ios::trunc);
-  if (!stream_) {
-    fail(file_);
-  }
-}
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file) : file_(file) {}
 
-void LineFile::append(const std::string& lines) {
-  errno = 0;
-  stream_ << lines << std::flush;
-  if (!stream_) {
-    fail(file_);
-  }
-}
-
-void makeRunFolder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw std::runtime_error(folder.string() + ": cannot be made a folder: " +
-                             (error ? error.message() : "there is a file of that name"));
-  }
-  const std::filesystem::path probe = folder / ".write_test";
-  LineFile(probe).append("\n");
-  std::filesystem::remove(probe);
-}
-
-std::string trajectoryLine(double timestamp, const Eigen::Isometry3d& camera_from_world) {
-  const Eigen::Isometry3d pose = camera_from_world.inverse();
-  const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
-  const Eigen::Vector3d t = pose.translation();
-  return fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", timestamp, t.x(),
-                     t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
-}
-
-std::string timingsHeader(const StageTimes& frame) {
-  std::string header = "timestamp";
-  for (const StageTime& time : frame.stages()) {
-    header += "," + time.stage + "_ms";
-  }
-  for (const StageTime& time : frame.stages()) {
-    header += "," + time.stage + "_cpu_ms";
-  }
-  return header + "\n";
-}
-
-std::string timingsRow(double timestamp, const StageTimes& frame) {
-  std::string row = fmt::format("{:.6f}", timestamp);
-  for (const StageTime& time : frame.stages()) {
-    row += fmt::format(",{:.3f}", time.wall_ms);
-  }
-  for (const StageTime& time : frame.stages()) {
-    row += fmt::format(",{:.3f}", time.cpu_ms);
-  }
-  return row + "\n";
-}
-
-std::string keyPointsHeader() { return "timestamp,u,v,depth,distance,cluster,label,weight\n"; }
-
-std::string keyPointRows(double timestamp, const KeyPointsView& points, Span<const float> distance,
-                         Span<const int> cluster, Span<const PointLabel> label,
-                         Span<const float> weight) {
-  checkKeyPoints(points);
-  const std::size_t n = points.size();
-  if (distance.size() != n || cluster.size() != n || label.size() != n || weight.size() != n) {
+void TrajectoryWriter::write(double timestamp, const Eigen::Isometry3d& camera_from_world) {
+  if (!std::isfinite(timestamp) || !camera_from_world.matrix().allFinite()) {
     throw std::invalid_argument(
-        fmt::format("keyPointRows: {} points, {} distances, {} clusters, {} labels, {} weights; "
-                    "expected equal sizes",
-                    n, distance.size(), cluster.size(), label.size(), weight.size()));
+        fmt::format("trajectory: stamp {} or its pose is not finite", timestamp));
   }
-  std::string rows;
-  for (std::size_t i = 0; i < n; ++i) {
-    rows += fmt::format("{:.6f},{:.3f},{:.3f},{:.4f},{:.4f},{},{},{:.4f}\n", timestamp, points.u[i],
-                        points.v[i], hasDepth(points.depth[i]) ? points.depth[i] : 0.0f,
-                        distance[i], cluster[i], toString(label[i]), weight[i]);
+  const Eigen::Isometry3d pose = camera_from_world.inverse();
+  const Eigen::Vector3d t = pose.translation();
+  Eigen::Quaterniond q(pose.linear());
+  q.normalize();
+  if (q.w() < 0.0) {
+    q.coeffs() = -q.coeffs();  // of the two that mean this rotation, always the same
   }
-  return rows;
+  file_.append(fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", timestamp,
+                           t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()));
 }
 
-void writeJson(const std::filesystem::path& file, const nlohmann::json& content) {
-  const std::filesystem::path unfinished = file.string() + ".part";
-  LineFile(unfinished).append(content.dump(2) + "\n");
-  std::error_code error;
-  std::filesystem::rename(unfinished, file, error);
-  if (error) {
-    throw std::runtime_error(file.string() + ": cannot be written: " + error.message());
+TimingsWriter::TimingsWriter(const std::filesystem::path& file, std::vector<std::string> stages)
+    : stages_((checkStages(stages), std::move(stages))), file_(file) {
+  std::string header = "timestamp";
+  for (const char* unit : {"wall_ms", "cpu_ms"}) {
+    for (const std::string& stage : stages_) {
+      header += fmt::format(",{}_{}", stage, unit);
+    }
   }
+  file_.append(header + "\n");
+}
+
+void TimingsWriter::write(double timestamp, const StageTimes& times) {
+  for (const StageTime& time : times.stages()) {
+    if (std::find(stages_.begin(), stages_.end(), time.stage) == stages_.end()) {
+      throw std::invalid_argument("timings: stage \"" + time.stage + "\" has no column");
+    }
+  }
+  std::string row = fmt::format("{:.6f}", timestamp);
+  for (const auto value : {&StageTime::wall_ms, &StageTime::cpu_ms}) {
+    for (const std::string& stage : stages_) {
+      const StageTime* time = times.find(stage);
+      row += "," + (time == nullptr ? "nan" : number(time->*value, 4));
+    }
+  }
+  file_.append(row + "\n");
+}
+
+KeyPointsWriter::KeyPointsWriter(const std::filesystem::path& file) : file_(file) {
+  file_.append("timestamp,u,v,depth,distance,cluster,label,weight\n");
+}
+
+void KeyPointsWriter::write(double timestamp, const LabelledKeyPoints& frame) {
+  checkSizes(frame);
+  std::string rows;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    fmt::format_to(std::back_inserter(rows), "{:.6f},{},{},{},{},{},{},{}\n", timestamp,
+                   number(frame.points.u[i], 3), number(frame.points.v[i], 3),
+                   number(frame.points.depth[i], 4), number(frame.distances[i], 4),
+                   frame.clusters[i], toString(frame.labels[i]), number(frame.weights[i], 4));
+  }
+  file_.append(rows);
+}
+
+RunFolder::RunFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+  const auto fail = [&](const std::string& reason) {
+    throw std::runtime_error("output folder " + folder_.string() + ": " + reason);
+  };
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) {
+    fail("cannot be created: " + error.message());
+  }
+  if (!std::filesystem::is_directory(folder_)) {
+    fail("is no folder");
+  }
+  for (const char* name : {kTrajectoryFile, kTimingsFile, kKeyPointsFile, kSummaryFile}) {
+    std::filesystem::remove(folder_ / name, error);
+    if (error) {
+      fail(std::string(name) + " of an earlier run cannot be removed: " + error.message());
+    }
+  }
+  try {
+    const std::filesystem::path probe = folder_ / ".write_test";
+    AppendFile(probe).append(
+        "\n");  // permissions alone do not tell: disks fill, mounts are read-only
+    std::filesystem::remove(probe);
+  } catch (const std::exception& cause) {
+    fail(cause.what());
+  }
+}
+
+TrajectoryWriter RunFolder::trajectory() const {
+  return TrajectoryWriter(folder_ / kTrajectoryFile);
+}
+
+TimingsWriter RunFolder::timings(std::vector<std::string> stages) const {
+  return {folder_ / kTimingsFile, std::move(stages)};
+}
+
+KeyPointsWriter RunFolder::keyPoints() const { return KeyPointsWriter(folder_ / kKeyPointsFile); }
+
+void RunFolder::writeSummary(const nlohmann::json& summary) const {
+  // Paths among the options may hold bytes that are no UTF-8.
+  replaceFile(folder_ / kSummaryFile,
+              summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace hmcdyn::slam

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -11,51 +10,87 @@
 
 #include <hmcdyn/types.hpp>
 
+#include "slam/output/append_file.hpp"
 #include "slam/output/stage_times.hpp"
 
 namespace hmcdyn::slam {
 
-/// A text file that grows line by line, each on disk before the next: what was written survives the
-/// program's death.
-class LineFile {
- public:
-  /// Empties the file.
-  /// @throws std::runtime_error naming the file and the reason when it cannot be written.
-  explicit LineFile(std::filesystem::path file);
+// The writers below append a frame at a time; each throws std::runtime_error, naming the file and
+// the reason, when it cannot write, and leaves the earlier frames in the file.
 
-  /// Appends complete lines, newline included.
-  /// @throws std::runtime_error naming the file and the reason, such as a full disk; earlier lines
-  /// stay.
-  void append(const std::string& lines);
+/// trajectory.txt in TUM format: `timestamp tx ty tz qx qy qz qw`, the camera's pose in the world.
+class TrajectoryWriter {
+ public:
+  explicit TrajectoryWriter(const std::filesystem::path& file);
+
+  /// @param timestamp s. @param camera_from_world translation in m; written is its inverse.
+  /// @throws std::invalid_argument where the stamp or the pose is not finite.
+  void write(double timestamp, const Eigen::Isometry3d& camera_from_world);
 
  private:
-  std::filesystem::path file_;
-  std::ofstream stream_;
+  AppendFile file_;
 };
 
-/// Makes the folder, with its parents; one that exists is used as it is, and the files of an earlier
-/// run in it are replaced.
-/// @throws std::runtime_error naming the folder and the reason where nothing can be written in it.
-void makeRunFolder(const std::filesystem::path& folder);
+/// timings.csv: a header, then a row a frame: the stamp (s), each stage's wall time, then each
+/// stage's CPU time (ms), `nan` for a stage that the frame did not run.
+class TimingsWriter {
+ public:
+  /// @param stages columns, in this order. @throws std::invalid_argument for a name that is empty,
+  /// comes twice, or holds a comma, a quote or a line break.
+  TimingsWriter(const std::filesystem::path& file, std::vector<std::string> stages);
 
-/// A pose as a line of a TUM trajectory: timestamp tx ty tz qx qy qz qw, the camera in the world.
-std::string trajectoryLine(double timestamp, const Eigen::Isometry3d& camera_from_world);
+  /// @throws std::invalid_argument for a stage that has no column.
+  void write(double timestamp, const StageTimes& times);
 
-/// Header of timings.csv for the stages of a frame, and a frame's row: wall-clock time a stage (ms),
-/// then the thread's processor time a stage (ms).
-std::string timingsHeader(const StageTimes& frame);
-std::string timingsRow(double timestamp, const StageTimes& frame);
+ private:
+  std::vector<std::string> stages_;
+  AppendFile file_;
+};
 
-/// Header of keypoints.csv, and a frame's rows: timestamp, pixel (px), depth (m, 0 = none), distance
-/// (px, nan = none), cluster (-1 = none), label, weight.
-/// @throws std::invalid_argument when sizes differ.
-std::string keyPointsHeader();
-std::string keyPointRows(double timestamp, const KeyPointsView& points, Span<const float> distance,
-                         Span<const int> cluster, Span<const PointLabel> label,
-                         Span<const float> weight);
+/// A frame's key points and what the filter made of them. Arrays of one size, borrowed.
+struct LabelledKeyPoints {
+  KeyPointsView points;
+  Span<const float> distances;    ///< Epipolar distances (px), NaN = none.
+  Span<const int> clusters;       ///< -1 = none.
+  Span<const PointLabel> labels;  ///< Verdicts.
+  Span<const float> weights;      ///< 0..1.
+};
 
-/// Writes JSON to a file in one step: a reader finds the old content or the new, never a part.
-/// @throws std::runtime_error naming the file and the reason.
-void writeJson(const std::filesystem::path& file, const nlohmann::json& content);
+/// keypoints.csv: a header, then a row a key point:
+/// `timestamp,u,v,depth,distance,cluster,label,weight`, NaN as `nan`.
+class KeyPointsWriter {
+ public:
+  explicit KeyPointsWriter(const std::filesystem::path& file);
+
+  /// @throws std::invalid_argument where the arrays differ in size.
+  void write(double timestamp, const LabelledKeyPoints& frame);
+
+ private:
+  AppendFile file_;
+};
+
+/// The folder of a run's results.
+class RunFolder {
+ public:
+  /// Creates the folder with its parents where it is missing. A folder that exists is used as it
+  /// is: of what it holds, the four files below are removed, so that none is left of an earlier
+  /// run; other files stay.
+  /// @throws std::runtime_error naming the folder and the reason where it cannot be created or
+  /// nothing can be written in it.
+  explicit RunFolder(std::filesystem::path folder);
+
+  const std::filesystem::path& path() const noexcept { return folder_; }
+
+  TrajectoryWriter trajectory() const;                           ///< trajectory.txt
+  TimingsWriter timings(std::vector<std::string> stages) const;  ///< timings.csv
+  KeyPointsWriter keyPoints() const;                             ///< keypoints.csv
+
+  /// Writes summary.json in one step: it is there complete or not at all. Numbers that are not
+  /// finite become null. @throws std::runtime_error naming the file and the reason.
+  void writeSummary(const nlohmann::json& summary) const;
+
+ private:
+  std::filesystem::path folder_;
+};
 
 }  // namespace hmcdyn::slam

@@ -2,57 +2,87 @@
 #include "slam/output/stage_times.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <numeric>
+#include <stdexcept>
 
 namespace hmcdyn::slam {
 namespace {
 
-double readClock(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+double wallMs() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double, std::milli>(now).count();
 }
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+double threadCpuMs() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
-StageSummary summarizeStage(std::vector<double> wall, const std::vector<double>& cpu) {
-  std::sort(wall.begin(), wall.end());
-  const std::size_t n = wall.size();
-  StageSummary summary;
-  summary.frames = n;
-  summary.mean_ms = mean(wall);
-  summary.mean_cpu_ms = mean(cpu);
-  summary.median_ms = n % 2 == 1 ? wall[n / 2] : 0.5 * (wall[n / 2 - 1] + wall[n / 2]);
-  const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(n)));
-  summary.p95_ms = wall[rank - 1];
-  return summary;
+template <class Stages>
+auto findStage(Stages& stages, const std::string& stage) {
+  return std::find_if(stages.begin(), stages.end(),
+                      [&](const StageTime& time) { return time.stage == stage; });
 }
 
 }  // namespace
 
-Instant readClocks() { return {readClock(CLOCK_MONOTONIC), readClock(CLOCK_THREAD_CPUTIME_ID)}; }
+StageTimer::StageTimer() : wall_start_ms_(wallMs()), cpu_start_ms_(threadCpuMs()) {}
 
-void StageTimes::note(const std::string& stage, const Instant& start) {
-  const Instant now = readClocks();
-  stages_.push_back({stage, now.wall_ms - start.wall_ms, now.cpu_ms - start.cpu_ms});
+StageTime StageTimer::elapsed(std::string stage) const {
+  return {std::move(stage), wallMs() - wall_start_ms_, threadCpuMs() - cpu_start_ms_};
 }
 
-std::map<std::string, StageSummary> summarize(const std::vector<StageTimes>& frames) {
-  std::map<std::string, std::vector<double>> wall;
-  std::map<std::string, std::vector<double>> cpu;
+void StageTimes::add(const StageTime& time) {
+  const auto known = findStage(stages_, time.stage);
+  if (known == stages_.end()) {
+    stages_.push_back(time);
+  } else {
+    known->wall_ms += time.wall_ms;
+    known->cpu_ms += time.cpu_ms;
+  }
+}
+
+const StageTime* StageTimes::find(const std::string& stage) const noexcept {
+  const auto known = findStage(stages_, stage);
+  return known == stages_.end() ? nullptr : &*known;
+}
+
+TimeStatistics timeStatistics(std::vector<double> values) {
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    throw std::invalid_argument("time statistics: a value is not finite");
+  }
+  if (values.empty()) {
+    return {};
+  }
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  const std::size_t rank = (95 * n + 99) / 100;  // ceil(0.95 n)
+  return {std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n),
+          0.5 * (values[(n - 1) / 2] + values[n / 2]), values[rank - 1]};
+}
+
+std::vector<StageSummary> summarizeStages(const std::vector<StageTimes>& frames) {
+  StageTimes names;
   for (const StageTimes& frame : frames) {
     for (const StageTime& time : frame.stages()) {
-      wall[time.stage].push_back(time.wall_ms);
-      cpu[time.stage].push_back(time.cpu_ms);
+      names.add(time);
     }
   }
-  std::map<std::string, StageSummary> summaries;
-  for (const auto& [stage, values] : wall) {
-    summaries.emplace(stage, summarizeStage(values, cpu.at(stage)));
+  std::vector<StageSummary> summaries;
+  for (const StageTime& name : names.stages()) {
+    std::vector<double> wall;
+    std::vector<double> cpu;
+    for (const StageTimes& frame : frames) {
+      if (const StageTime* time = frame.find(name.stage); time != nullptr) {
+        wall.push_back(time->wall_ms);
+        cpu.push_back(time->cpu_ms);
+      }
+    }
+    summaries.push_back({name.stage, wall.size(), timeStatistics(wall), timeStatistics(cpu)});
   }
   return summaries;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -14,55 +13,70 @@ namespace hmcdyn::slam {
 struct StageTime {
   std::string stage;
   double wall_ms = 0.0;  ///< Time that passed (ms).
-  double cpu_ms = 0.0;   ///< Processor time of the calling thread (ms).
+  double cpu_ms = 0.0;   ///< Processor time of the thread that measured (ms).
 };
 
-/// A clock reading.
-struct Instant {
-  double wall_ms = 0.0;
-  double cpu_ms = 0.0;
+/// A stopwatch that runs from its construction. CPU time is that of the calling thread: construct
+/// and read it in one thread.
+class StageTimer {
+ public:
+  StageTimer();
+
+  StageTime elapsed(std::string stage) const;
+
+ private:
+  double wall_start_ms_;
+  double cpu_start_ms_;
 };
 
-/// Now, by the monotonic clock and the calling thread's processor clock.
-Instant readClocks();
-
-/// The stages of one frame, in the order in which they ran.
+/// The stages of one frame, in the order in which they were first noted.
 class StageTimes {
  public:
-  /// Runs `work`, notes what it took under the stage's name, and hands on what it returns. Nothing
-  /// is noted when it throws.
+  /// Times of a stage that ran several times in the frame add up.
+  void add(const StageTime& time);
+
+  /// Runs `work`, notes what it took and hands on what it returns. Nothing is noted when it throws.
   template <class Work>
-  auto measure(const std::string& stage, Work&& work) {
-    const Instant start = readClocks();
-    if constexpr (std::is_void_v<decltype(work())>) {
+  std::invoke_result_t<Work> measure(std::string stage, Work&& work) {
+    const StageTimer timer;
+    if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
       std::forward<Work>(work)();
-      note(stage, start);
+      add(timer.elapsed(std::move(stage)));
     } else {
-      auto result = std::forward<Work>(work)();
-      note(stage, start);
+      std::invoke_result_t<Work> result = std::forward<Work>(work)();
+      add(timer.elapsed(std::move(stage)));
       return result;
     }
   }
 
   const std::vector<StageTime>& stages() const noexcept { return stages_; }
+  /// The stage's time, or null where the frame did not run it. Valid until the next change.
+  const StageTime* find(const std::string& stage) const noexcept;
 
  private:
-  void note(const std::string& stage, const Instant& start);
-
   std::vector<StageTime> stages_;
 };
 
-/// Mean, median and 95th percentile of a stage over the frames (ms). Of an even count the median is
-/// the mean of the middle two; the percentile is the smallest value that 95 % do not exceed.
-struct StageSummary {
-  std::size_t frames = 0;
-  double mean_ms = 0.0;
-  double median_ms = 0.0;
-  double p95_ms = 0.0;
-  double mean_cpu_ms = 0.0;
+/// Of times in ms. The median of an even count is the mean of the middle two; p95 is the smallest
+/// value that at least 95 % of the values do not exceed.
+struct TimeStatistics {
+  double mean = 0.0;
+  double median = 0.0;
+  double p95 = 0.0;
 };
 
-/// By stage. A stage that a frame did not run is not counted for it.
-std::map<std::string, StageSummary> summarize(const std::vector<StageTimes>& frames);
+/// All 0 for no values. @throws std::invalid_argument on a value that is not finite.
+TimeStatistics timeStatistics(std::vector<double> values);
+
+/// A stage over the frames that ran it.
+struct StageSummary {
+  std::string stage;
+  std::size_t frames = 0;
+  TimeStatistics wall_ms;
+  TimeStatistics cpu_ms;
+};
+
+/// By stage, in the order in which the stages first occur.
+std::vector<StageSummary> summarizeStages(const std::vector<StageTimes>& frames);
 
 }  // namespace hmcdyn::slam

@@ -13,6 +13,7 @@
 
 #include "slam/camera/calibration.hpp"
 #include "slam/dataset/tum_dataset.hpp"
+#include "slam/detection/coco_classes.hpp"
 #include "slam/output/annotate.hpp"
 #include "slam/output/run_folder.hpp"
 #include "slam/pipeline/pipeline.hpp"
@@ -22,41 +23,51 @@
 namespace hmcdyn::slam {
 namespace {
 
+/// Stages of Pipeline::process(), the columns of timings.csv.
+const std::vector<std::string> kStages = {"rectify", "detect", "features", "filter", "track"};
+
+/// The names of COCO's classes, by number.
+std::vector<std::string> classNames() {
+  std::vector<std::string> names;
+  for (int id = 0; id < kCocoClassCount; ++id) {
+    names.push_back(cocoClassName(id));
+  }
+  return names;
+}
+
 /// The files of a run, written as frames are done.
 class RunWriter {
  public:
-  explicit RunWriter(const SlamOptions& options) : options_(options) {
-    makeRunFolder(options.output);
-    trajectory_.emplace(options.output / "trajectory.txt");
-    timings_.emplace(options.output / "timings.csv");
+  explicit RunWriter(const SlamOptions& options)
+      : folder_(options.output),
+        trajectory_(folder_.trajectory()),
+        timings_(folder_.timings(kStages)) {
     if (options.write_keypoints) {
-      key_points_.emplace(options.output / "keypoints.csv");
-      key_points_->append(keyPointsHeader());
+      key_points_.emplace(folder_.keyPoints());
     }
     if (options.annotate) {
-      makeRunFolder(options.output / "frames");
+      pictures_ = options.output / "frames";
+      std::filesystem::create_directories(pictures_);
     }
   }
 
   void write(const FrameOutcome& outcome) {
     const double timestamp = outcome.image.timestamp;
     if (outcome.tracking.failure == TrackingFailure::kNone) {
-      trajectory_->append(trajectoryLine(timestamp, outcome.tracking.camera_from_world));
+      trajectory_.write(timestamp, outcome.tracking.camera_from_world);
     }
-    if (!timings_started_) {
-      timings_->append(timingsHeader(outcome.times));
-      timings_started_ = true;
-    }
-    timings_->append(timingsRow(timestamp, outcome.times));
+    timings_.write(timestamp, outcome.times);
     const FilterStageResult& stage = outcome.filtered.stage;
     if (key_points_) {
-      key_points_->append(keyPointRows(timestamp, outcome.points.view(), outcome.filtered.distance,
-                                       stage.cluster, stage.label, outcome.weight));
+      key_points_->write(timestamp, {outcome.points.view(), outcome.filtered.distance,
+                                     stage.cluster, stage.label, outcome.weight});
     }
-    if (options_.annotate) {
+    if (!pictures_.empty()) {
       writePicture(outcome);
     }
   }
+
+  void writeSummary(const nlohmann::json& summary) const { folder_.writeSummary(summary); }
 
  private:
   void writePicture(const FrameOutcome& outcome) const {
@@ -65,43 +76,36 @@ class RunWriter {
     for (const BoxDecision& box : stage.boxes) {
       box_is_dynamic.push_back(box.verdict.is_dynamic ? 1 : 0);
     }
-    Annotation annotation;
-    annotation.points = outcome.points.view();
-    annotation.label = stage.label;
-    annotation.cluster = stage.cluster;
-    annotation.boxes = outcome.boxes;
-    annotation.box_is_dynamic = box_is_dynamic;
-    annotation.status = fmt::format("frame {}  {} of {} points dynamic", outcome.image.index,
-                                    stage.frame.dynamic, stage.frame.points);
+    AnnotationText text;
+    text.frame = outcome.image.index;
+    text.class_names = class_names_;
     if (!outcome.filtered.earlier.empty()) {
-      annotation.status +=
-          fmt::format("  model: {}", toString(outcome.filtered.earlier.front().motion.model.kind));
+      text.model = toString(outcome.filtered.earlier.front().motion.model.kind);
     }
-    annotation.status += outcome.tracking.failure == TrackingFailure::kNone
-                             ? fmt::format("  {} map points", outcome.tracking.inliers)
-                             : fmt::format("  LOST: {}", toString(outcome.tracking.failure));
-    const std::filesystem::path file =
-        options_.output / "frames" / fmt::format("{:06d}.png", outcome.image.index);
-    if (!cv::imwrite(file.string(), annotateFrame(outcome.image.bgr, annotation))) {
+    const std::filesystem::path file = pictures_ / fmt::format("{:06d}.png", outcome.image.index);
+    if (!cv::imwrite(file.string(),
+                     annotateFrame(outcome.image.bgr, outcome.points.view(), stage.label,
+                                   stage.cluster, outcome.boxes, box_is_dynamic, text))) {
       throw std::runtime_error(file.string() + ": cannot be written");
     }
   }
 
-  const SlamOptions& options_;
-  std::optional<LineFile> trajectory_;
-  std::optional<LineFile> timings_;
-  std::optional<LineFile> key_points_;
-  bool timings_started_ = false;
+  RunFolder folder_;
+  TrajectoryWriter trajectory_;
+  TimingsWriter timings_;
+  std::optional<KeyPointsWriter> key_points_;
+  std::filesystem::path pictures_;  ///< Empty = no pictures.
+  std::vector<std::string> class_names_ = classNames();
 };
 
-nlohmann::json toJson(const std::map<std::string, StageSummary>& stages) {
+nlohmann::json toJson(const std::vector<StageSummary>& stages) {
   nlohmann::json json;
-  for (const auto& [stage, summary] : stages) {
-    json[stage] = {{"frames", summary.frames},
-                   {"mean_ms", summary.mean_ms},
-                   {"median_ms", summary.median_ms},
-                   {"p95_ms", summary.p95_ms},
-                   {"mean_cpu_ms", summary.mean_cpu_ms}};
+  for (const StageSummary& stage : stages) {
+    json[stage.stage] = {{"frames", stage.frames},
+                         {"mean_ms", stage.wall_ms.mean},
+                         {"median_ms", stage.wall_ms.median},
+                         {"p95_ms", stage.wall_ms.p95},
+                         {"mean_cpu_ms", stage.cpu_ms.mean}};
   }
   return json;
 }
@@ -119,7 +123,7 @@ nlohmann::json summarizeRun(const SlamOptions& options, const Pipeline& pipeline
                             const RunCounts& counts, const std::vector<StageTimes>& times) {
   nlohmann::json summary;
   summary["counts"] = toJson(counts);
-  summary["stages"] = toJson(summarize(times));
+  summary["stages"] = toJson(summarizeStages(times));
   summary["options"] = toJson(options, pipeline.detectorName());
   summary["versions"] = libraryVersions();
   summary["warnings"] = filterWarnings(counts, options);
@@ -173,7 +177,7 @@ nlohmann::json runSlam(SlamOptions options) {
     spdlog::warn("{}", warning);
   }
   const nlohmann::json summary = summarizeRun(options, pipeline, counts, times);
-  writeJson(options.output / "summary.json", summary);
+  writer.writeSummary(summary);
   return summary;
 }
 
