@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "slam/features/hamming_distance.hpp"
+
 namespace hmcdyn::slam {
 namespace {
 
