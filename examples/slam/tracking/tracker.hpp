@@ -24,10 +24,17 @@ struct KeyFramePolicy {
   std::size_t max_interval = 10;  ///< ... or so many frames have passed since the last.
 };
 
+/// Refinement with a row for depth, which a depth camera measures independently of the pixels.
+inline PoseRefinementOptions rgbdRefinement() {
+  PoseRefinementOptions options;
+  options.depth_row = DepthRow::kDepth;
+  return options;
+}
+
 struct TrackerOptions {
   MapOptions map;
   MatcherOptions matcher;
-  PoseRefinementOptions refinement;
+  PoseRefinementOptions refinement = rgbdRefinement();
   KeyFramePolicy key_frames;
   float prediction_radius = 15.0f;  ///< Search window around the predicted pose (px).
   float wide_radius = 40.0f;        ///< The same after a first failure (px).
