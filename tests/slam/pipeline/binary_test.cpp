@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hmcdyn_slam as a user meets it: a process with exit codes and messages.
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "dataset/temporary_folder.hpp"
+#include "pipeline/toy_sequence.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string text;  ///< Standard output and error.
+};
+
+Outcome runBinary(const std::string& arguments) {
+  const std::string command = std::string(HMCDYN_SLAM) + " " + arguments + " 2>&1";
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) {
+    return outcome;
+  }
+  std::array<char, 4096> buffer{};
+  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) {
+    outcome.text += buffer.data();
+  }
+  outcome.exit_code = WEXITSTATUS(pclose(pipe));
+  return outcome;
+}
+
+class Binary : public testing::Test {
+ protected:
+  /// Arguments of a run over a toy sequence; empty camera and output = the ordinary ones.
+  std::string toyArguments(const std::string& camera = {}, const std::string& output = {}) {
+    const std::string folder = folder_.path().string();
+    test::writeToySequence(folder + "/toy");
+    return fmt::format("--dataset {}/toy --camera {} --output {} --quiet", folder,
+                       camera.empty() ? folder + "/toy/calibration.yaml" : camera,
+                       output.empty() ? folder + "/out" : output);
+  }
+
+  hmcdyn::test::TemporaryFolder folder_;
+};
+
+TEST_F(Binary, HelpTeachesEveryGroupOfOptions) {
+  const Outcome outcome = runBinary("--help");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* text : {"Input", "Detection", "Filter", "Tracking", "Output",
+                           "Example:", "--camera", "two_threshold (SG-SLAM)", "(1/m)"}) {
+    EXPECT_NE(outcome.text.find(text), std::string::npos) << text;
+  }
+}
+
+TEST_F(Binary, AGoodRunSaysWhatItTrackedAndWhereTheResultsAre) {
+  const Outcome outcome = runBinary(toyArguments());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("tracked 8 of 8 frames, ATE RMSE"), std::string::npos)
+      << outcome.text;
+  EXPECT_NE(outcome.text.find("results in"), std::string::npos);
+}
+
+TEST_F(Binary, UsageErrorsExitWithTwo) {
+  EXPECT_EQ(runBinary("").exit_code, 2);
+  EXPECT_EQ(runBinary(toyArguments() + " --filter unknown").exit_code, 2);
+  EXPECT_EQ(runBinary(toyArguments() + " --classes unicorn").exit_code, 2);
+  const Outcome camera = runBinary(toyArguments("tum4"));
+  EXPECT_EQ(camera.exit_code, 2);
+  EXPECT_NE(camera.text.find("tum3"), std::string::npos) << camera.text;
+}
+
+TEST_F(Binary, DarknetWithoutWeightsNamesTheOption) {
+  const Outcome outcome = runBinary(toyArguments() + " --detector darknet --model a.cfg");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.text.find("--weights"), std::string::npos) << outcome.text;
+}
+
+TEST_F(Binary, BadDataExitsWithOneAndNamesTheFile) {
+  const std::string arguments = toyArguments();
+  std::ofstream(folder_.path() / "toy" / "rgb.txt") << "# colour\n1000.0 rgb/a.png\nnonsense\n";
+  const Outcome outcome = runBinary(arguments);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.text.find("rgb.txt:3"), std::string::npos) << outcome.text;
+}
+
+TEST_F(Binary, AnOutputFolderThatCannotBeMadeIsNamed) {
+  const Outcome outcome = runBinary(toyArguments({}, "/proc/hmcdyn_out"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.text.find("/proc/hmcdyn_out"), std::string::npos) << outcome.text;
+}
+
+}  // namespace
+}  // namespace hmcdyn::slam

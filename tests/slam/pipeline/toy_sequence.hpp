@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace hmcdyn::slam::test {
+
+/// Blobs of several sizes that corners are found on.
+inline cv::Mat makeTexture(cv::Size size, std::uint64_t seed) {
+  cv::RNG random(seed);
+  cv::Mat texture = cv::Mat::zeros(size, CV_32F);
+  for (const double blur : {1.5, 3.0, 6.0}) {
+    cv::Mat noise(size, CV_32F);
+    random.fill(noise, cv::RNG::NORMAL, 0.0, 45.0 * blur);
+    cv::GaussianBlur(noise, noise, cv::Size(), blur);
+    texture += noise;
+  }
+  cv::Mat gray;
+  texture += 128.0;
+  texture.convertTo(gray, CV_8U);
+  return gray;
+}
+
+/// A sequence in TUM format with exact truth: a camera with f = 300 px that moves to the right past
+/// a wall of horizontal slabs, each at its own depth; 320x240 px, 30 frames a second.
+struct ToySequence {
+  int frames = 8;
+  double step = 0.01;  ///< Camera's way from frame to frame (m).
+  bool with_depth = true;
+};
+
+inline void writeToySequence(const std::filesystem::path& folder, const ToySequence& toy = {}) {
+  constexpr float kFocal = 300.0f;
+  const cv::Mat texture = makeTexture({480, 240}, 5);
+  std::filesystem::create_directories(folder / "rgb");
+  std::filesystem::create_directories(folder / "depth");
+  std::ofstream rgb(folder / "rgb.txt");
+  std::ofstream depth(folder / "depth.txt");
+  std::ofstream truth(folder / "groundtruth.txt");
+  std::ofstream(folder / "calibration.yaml")
+      << "fx: 300\nfy: 300\ncx: 159.5\ncy: 119.5\nwidth: 320\nheight: 240\ndepth_factor: 5000\n";
+  for (int k = 0; k < toy.frames; ++k) {
+    const double x = toy.step * k;
+    cv::Mat image(240, 320, CV_8U);
+    cv::Mat range(240, 320, CV_16U);
+    for (int slab = 0; slab < 4; ++slab) {
+      const float z = 1.5f + 0.5f * static_cast<float>(slab);
+      const cv::Rect rows(0, 60 * slab, 320, 60);
+      const cv::Matx23f shift(1, 0, -40.0f - kFocal * static_cast<float>(x) / z, 0, 1, 0);
+      cv::Mat moved;
+      cv::warpAffine(texture, moved, shift, image.size(), cv::INTER_CUBIC);
+      moved(rows).copyTo(image(rows));
+      range(rows).setTo(toy.with_depth ? z * 5000.0f : 0.0f);
+    }
+    const std::string stamp = fmt::format("{:.6f}", 1000.0 + k / 30.0);
+    cv::Mat color;
+    cv::cvtColor(image, color, cv::COLOR_GRAY2BGR);
+    cv::imwrite((folder / "rgb" / (stamp + ".png")).string(), color);
+    cv::imwrite((folder / "depth" / (stamp + ".png")).string(), range);
+    rgb << fmt::format("{0} rgb/{0}.png\n", stamp);
+    depth << fmt::format("{0} depth/{0}.png\n", stamp);
+    truth << fmt::format("{} {:.6f} 0 0 0 0 0 1\n", stamp, x);
+  }
+}
+
+}  // namespace hmcdyn::slam::test

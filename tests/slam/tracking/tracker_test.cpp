@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/tracking/tracker.hpp"
+
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+namespace hmcdyn::slam {
+namespace {
+
+const PinholeCamera kCamera{300.0, 300.0, 159.5, 119.5};
+
+/// Points of a room, each with a random descriptor of its own, and frames that see them exactly.
+class Room {
+ public:
+  explicit Room(std::uint32_t seed, int points = 300) {
+    std::mt19937 random(seed);
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * static_cast<double>(random()) / 4294967295.0;
+    };
+    for (int i = 0; i < points; ++i) {
+      points_.emplace_back(uniform(-1.0, 1.0), uniform(-0.7, 0.7), uniform(1.5, 3.0));
+      Descriptor descriptor;
+      for (std::uint8_t& byte : descriptor) {
+        byte = static_cast<std::uint8_t>(random());
+      }
+      descriptors_.push_back(descriptor);
+    }
+  }
+
+  Frame see(std::size_t index, const Eigen::Isometry3d& camera_from_world) const {
+    Features features;
+    cv::Mat depth = cv::Mat::zeros(240, 320, CV_32F);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector3d point = camera_from_world * points_[i];
+      const Eigen::Vector2d pixel = kCamera.project(point);
+      if (pixel.x() < 1.0 || pixel.y() < 1.0 || pixel.x() > 318.0 || pixel.y() > 238.0) {
+        continue;
+      }
+      features.key_points.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
+                                       31.0f);
+      features.key_points.back().octave = 0;
+      cv::Mat row(1, 32, CV_8U);
+      std::memcpy(row.data, descriptors_[i].data(), 32);
+      features.descriptors.push_back(row);
+      depth.at<float>(cvRound(pixel.y()), cvRound(pixel.x())) = static_cast<float>(point.z());
+    }
+    return makeFrame(index, 0.033 * static_cast<double>(index), features, depth, 1.2f);
+  }
+
+ private:
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<Descriptor> descriptors_;
+};
+
+Eigen::Isometry3d movedBy(double x, double turn) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(-x, 0.0, 0.0);
+  return pose;
+}
+
+double distanceBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return (a.inverse().translation() - b.inverse().translation()).norm();
+}
+
+TEST(Tracker, FollowsACameraThroughARoom) {
+  const Room room(3);
+  Tracker tracker(kCamera, {});
+  for (std::size_t k = 0; k < 20; ++k) {
+    const double t = static_cast<double>(k);
+    const Eigen::Isometry3d truth = movedBy(0.01 * t, 0.004 * t);
+    const TrackingResult result = tracker.track(room.see(k, truth));
+    ASSERT_EQ(result.failure, TrackingFailure::kNone) << "frame " << k;
+    EXPECT_LT(distanceBetween(result.camera_from_world, truth), 0.002) << "frame " << k;
+  }
+  EXPECT_GE(tracker.map().keyFrames().size(), 2U);
+}
+
+TEST(Tracker, AFrameWithoutKeyPointsIsLostAndTheNextIsFoundAgain) {
+  const Room room(4);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  tracker.track(room.see(1, movedBy(0.01, 0.0)));
+  const TrackingResult lost =
+      tracker.track(makeFrame(2, 0.066, {}, cv::Mat::zeros(240, 320, CV_32F), 1.2f));
+  EXPECT_EQ(lost.failure, TrackingFailure::kTooFewMatches);
+  const Eigen::Isometry3d jumped = movedBy(0.15, 0.05);
+  const TrackingResult found = tracker.track(room.see(3, jumped));
+  ASSERT_EQ(found.failure, TrackingFailure::kNone);
+  EXPECT_LT(distanceBetween(found.camera_from_world, jumped), 0.002);
+}
+
+TEST(Tracker, CannotStartWithoutDepth) {
+  const Room room(5);
+  Frame frame = room.see(0, movedBy(0.0, 0.0));
+  std::fill(frame.points.depth.begin(), frame.points.depth.end(), 0.0f);
+  Tracker tracker(kCamera, {});
+  EXPECT_EQ(tracker.track(frame).failure, TrackingFailure::kTooFewKeyPoints);
+}
+
+TEST(Tracker, PointsOfWeightZeroDoNotMoveTheCamera) {
+  const Room room(6);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  // A third of the key points slides by 8 px, and the filter says so.
+  Frame frame = room.see(1, movedBy(0.01, 0.0));
+  for (std::size_t i = 0; i < frame.points.size(); i += 3) {
+    frame.points.u[i] += 8.0f;
+    frame.weight[i] = 0.0f;
+    frame.label[i] = PointLabel::kDynamic;
+  }
+  const TrackingResult result = tracker.track(frame);
+  ASSERT_EQ(result.failure, TrackingFailure::kNone);
+  EXPECT_LT(distanceBetween(result.camera_from_world, movedBy(0.01, 0.0)), 0.002);
+}
+
+TEST(Map, PeopleAndUncertainPointsStayOut) {
+  const Room room(7);
+  Frame frame = room.see(0, movedBy(0.0, 0.0));
+  const std::size_t n = frame.points.size();
+  ASSERT_GT(n, 50U);
+  frame.in_person[0] = 1;                   // a person who stands still
+  frame.label[1] = PointLabel::kDynamic;    // moves
+  frame.label[2] = PointLabel::kUnmatched;  // nobody knows
+  frame.label[3] = PointLabel::kSuspect;    // as deep as the person
+  frame.weight[3] = 0.2f;
+  frame.label[4] = PointLabel::kSuspect;  // background seen past the person
+  frame.weight[4] = 0.9f;
+  Map map(kCamera, {});
+  map.insertKeyFrame(frame);
+  const std::vector<int>& entered = map.keyFrames().back().frame.map_point;
+  EXPECT_EQ(entered[0], kNoMapPoint);
+  EXPECT_EQ(entered[1], kNoMapPoint);
+  EXPECT_EQ(entered[2], kNoMapPoint);
+  EXPECT_EQ(entered[3], kNoMapPoint);
+  EXPECT_NE(entered[4], kNoMapPoint);
+  EXPECT_EQ(map.points().size(), n - 4);
+}
+
+TEST(Map, APointThatIsOftenCalledDynamicIsRemoved) {
+  const Room room(8);
+  Map map(kCamera, {});
+  map.insertKeyFrame(room.see(0, movedBy(0.0, 0.0)));
+  for (int k = 0; k < 6; ++k) {
+    map.count(0, true, k % 2 == 0);  // half of its sightings
+    map.count(1, true, false);
+    map.count(2, false, false);  // never found again
+  }
+  map.cull();
+  EXPECT_TRUE(map.points()[0].removed);
+  EXPECT_FALSE(map.points()[1].removed);
+  EXPECT_TRUE(map.points()[2].removed);
+}
+
+TEST(DepthAtKeyPoints, FillsAHoleFromAgreeingNeighboursOnly) {
+  cv::Mat depth = cv::Mat::zeros(20, 20, CV_32F);
+  depth(cv::Rect(4, 4, 3, 3)).setTo(2.0f);
+  depth.at<float>(5, 5) = 0.0f;
+  depth(cv::Rect(12, 12, 3, 3)).setTo(2.0f);
+  depth(cv::Rect(12, 12, 1, 3)).setTo(3.0f);  // an edge
+  depth.at<float>(13, 13) = 0.0f;
+  const std::vector<cv::KeyPoint> points = {
+      {5.0f, 5.0f, 1.0f}, {13.0f, 13.0f, 1.0f}, {4.2f, 4.4f, 1.0f}, {19.9f, 0.0f, 1.0f}};
+  const std::vector<float> found = depthAtKeyPoints(depth, points);
+  EXPECT_FLOAT_EQ(found[0], 2.0f);
+  EXPECT_FLOAT_EQ(found[1], 0.0f);
+  EXPECT_FLOAT_EQ(found[2], 2.0f);
+  EXPECT_FLOAT_EQ(found[3], 0.0f);
+}
+
+}  // namespace
+}  // namespace hmcdyn::slam
