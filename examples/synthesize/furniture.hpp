@@ -19,8 +19,21 @@ namespace hmcdyn::synthesize {
 struct Palette {
   explicit Palette(TextureLibrary& textures, std::uint64_t seed);
 
-  int desk_wood, dark_wood, light_wood, white_plastic, black_plastic, grey_metal, dark_metal,
-      blue_fabric, red_fabric, grey_fabric, green_leaf, soil, spines, cable, paper_white;
+  int desk_wood = 0;
+  int dark_wood = 0;
+  int light_wood = 0;
+  int white_plastic = 0;
+  int black_plastic = 0;
+  int grey_metal = 0;
+  int dark_metal = 0;
+  int blue_fabric = 0;
+  int red_fabric = 0;
+  int grey_fabric = 0;
+  int green_leaf = 0;
+  int soil = 0;
+  int spines = 0;
+  int cable = 0;
+  int paper_white = 0;
   std::vector<int> covers, pages, keyboards, screens, mugs, cardboards, posters;
 };
 

@@ -87,8 +87,7 @@ void writePicture(const fs::path& path, const cv::Mat& picture) {
   std::vector<std::uint8_t> bytes;
   cv::imencode(".png", picture, bytes, settings);
   std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
+  file << std::string(bytes.begin(), bytes.end());
   file.close();
   if (!file) {
     throw std::runtime_error(path.string() + ": cannot be written");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -102,8 +103,11 @@ std::vector<StampedPose> readTrajectory(const std::filesystem::path& path) {
     if (q.norm() < 1e-3) {
       fail("the quaternion has no length");
     }
-    if (!poses.empty() && values[0] <= poses.back().time) {
-      fail("the time stamp does not rise");
+    if (!poses.empty() && values[0] < poses.back().time) {
+      fail("the time stamp falls");
+    }
+    if (!poses.empty() && values[0] == poses.back().time) {
+      continue;  // motion capture repeats itself now and then, TUM's fr3_walking_static for one
     }
     StampedPose pose;
     pose.time = values[0];

@@ -16,9 +16,10 @@ struct StampedPose {
   Eigen::Isometry3d camera_to_world = Eigen::Isometry3d::Identity();
 };
 
-/// Reads "timestamp tx ty tz qx qy qz qw" lines; lines that are empty or start with # are skipped.
+/// Reads "timestamp tx ty tz qx qy qz qw" lines; lines that are empty, start with # or repeat the
+/// time stamp before are skipped.
 /// @throws std::runtime_error with file and line for a file that cannot be read, a line that is
-///   not eight finite numbers, a quaternion without length, or times that do not rise.
+///   not eight finite numbers, a quaternion without length, or times that fall.
 std::vector<StampedPose> readTrajectory(const std::filesystem::path& path);
 
 /// A camera path through recorded poses. The recording's world is moved by one rigid transform, so

@@ -58,7 +58,16 @@ TEST(TrajectoryFile, NamesFileAndLineOfWhatItCannotUse) {
   EXPECT_NE(messageOf(written(folder, "1 nan 0 0 0 0 0 1\n")).find(":1: 'nan'"), std::string::npos);
   EXPECT_NE(messageOf(written(folder, good + "2 0 0 0 0 0 0 0\n")).find(":2: the quaternion"),
             std::string::npos);
-  EXPECT_NE(messageOf(written(folder, good + good)).find(":2: the time stamp"), std::string::npos);
+  EXPECT_NE(messageOf(written(folder, "2 0 0 0 0 0 0 1\n" + good)).find(":2: the time stamp falls"),
+            std::string::npos);
+}
+
+TEST(TrajectoryFile, RepeatedTimeStampKeepsTheFirstPose) {
+  const TemporaryFolder folder;
+  const auto poses = readTrajectory(
+      written(folder, "1 0 0 0 0 0 0 1\n2 5 0 0 0 0 0 1\n2 6 0 0 0 0 0 1\n3 7 0 0 0 0 0 1\n"));
+  ASSERT_EQ(poses.size(), 3U);
+  EXPECT_EQ(poses[1].camera_to_world.translation().x(), 5.0);
 }
 
 /// A walk of 1 m along the recording's x in 2 s, looking along the recording's z.
