@@ -56,7 +56,7 @@ int occupiedCells(const std::vector<Match>& some, const std::vector<Match>& all)
   std::array<bool, 16> occupied{};
   for (const Match& match : some) {
     const Eigen::Array2i index = ((match.current.array() - low) / cell).cast<int>().max(0).min(3);
-    occupied[static_cast<std::size_t>(index.y() * 4 + index.x())] = true;
+    occupied[4 * static_cast<std::size_t>(index.y()) + static_cast<std::size_t>(index.x())] = true;
   }
   return static_cast<int>(std::count(occupied.begin(), occupied.end(), true));
 }

@@ -233,7 +233,8 @@ inline std::vector<std::uint8_t> peerFlags(const KeyPointsView& points, Span<con
     case FilterRule::kHmc:
       break;
   }
-  return std::vector<std::uint8_t>(points.size(), 0);
+  std::vector<std::uint8_t> nothing_dynamic(points.size(), 0);
+  return nothing_dynamic;
 }
 
 inline void countLabels(const FilterStageWorkspace& workspace, FrameDecision& frame) {

@@ -42,6 +42,7 @@ struct KeyPoints {
     v.reserve(n);
     depth.reserve(n);
   }
+  // NOLINTNEXTLINE(readability-identifier-naming): as the standard containers say it
   void push_back(float column, float row, float metres) {
     u.push_back(column);
     v.push_back(row);

@@ -29,6 +29,7 @@ const std::vector<std::string> kStages = {"rectify", "detect", "features", "filt
 /// The names of COCO's classes, by number.
 std::vector<std::string> classNames() {
   std::vector<std::string> names;
+  names.reserve(kCocoClassCount);
   for (int id = 0; id < kCocoClassCount; ++id) {
     names.push_back(cocoClassName(id));
   }
@@ -176,7 +177,7 @@ nlohmann::json runSlam(SlamOptions options) {
   for (const std::string& warning : filterWarnings(counts, options)) {
     spdlog::warn("{}", warning);
   }
-  const nlohmann::json summary = summarizeRun(options, pipeline, counts, times);
+  nlohmann::json summary = summarizeRun(options, pipeline, counts, times);
   writer.writeSummary(summary);
   return summary;
 }

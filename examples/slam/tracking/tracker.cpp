@@ -56,8 +56,8 @@ const char* toString(TrackingFailure failure) noexcept {
   return "invalid";
 }
 
-Tracker::Tracker(const PinholeCamera& camera, TrackerOptions options)
-    : camera_(camera), options_(std::move(options)), map_(camera, options_.map) {}
+Tracker::Tracker(const PinholeCamera& camera, const TrackerOptions& options)
+    : camera_(camera), options_(options), map_(camera, options_.map) {}
 
 Eigen::Isometry3d Tracker::predict() const { return velocity_ * last_->camera_from_world; }
 

@@ -65,7 +65,7 @@ struct TrackingResult {
 /// weighted refinement (eq. 9-10), key frames. The first frame's camera is the world's origin.
 class Tracker {
  public:
-  Tracker(const PinholeCamera& camera, TrackerOptions options);
+  Tracker(const PinholeCamera& camera, const TrackerOptions& options);
 
   /// Tracks the next frame, whose points are labelled and weighted already.
   TrackingResult track(Frame frame);

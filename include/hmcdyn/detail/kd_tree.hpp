@@ -37,6 +37,7 @@ class KdTree {
   }
 
  private:
+  // NOLINTBEGIN(readability-identifier-naming): nanoflann asks for these names
   struct Cloud {
     const Eigen::MatrixXf* points;
     std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(points->cols()); }
@@ -48,6 +49,7 @@ class KdTree {
       return false;
     }
   };
+  // NOLINTEND(readability-identifier-naming)
 
   /// nanoflann's result-set concept.
   template <class Visit>
@@ -55,7 +57,7 @@ class KdTree {
     using DistanceType = float;
     using IndexType = std::uint32_t;
 
-    float squared_radius;
+    float squared_radius = 0.0f;
     Visit& visit;
     std::size_t found = 0;
 
