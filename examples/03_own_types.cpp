@@ -66,6 +66,7 @@ int main() {
   hmcdyn::KeyPoints points;
   hmcdyn::FlowMatches matches;
   std::vector<float> x, y, z;
+  points.reserve(features.size());
   for (const mine::Feature& feature : features) {
     points.push_back(feature.x, feature.y, static_cast<float>(feature.range));
     matches.u.push_back(feature.earlier_x);
@@ -75,6 +76,7 @@ int main() {
     z.push_back(feature.landmark.z());
   }
   std::vector<hmcdyn::DetectionBox> boxes;
+  boxes.reserve(detections.size());
   for (const mine::Detection& detection : detections) {
     boxes.push_back({static_cast<float>(detection.left), static_cast<float>(detection.top),
                      static_cast<float>(detection.left + detection.width),

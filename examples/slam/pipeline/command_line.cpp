@@ -134,6 +134,14 @@ void declareFilter(CLI::App& app, SlamOptions& options) {
   app.add_option("--distance-scale", stage.clustering.distance_scale, "s_d (1/px)")
       ->capture_default_str()
       ->group("Filter");
+  app.add_option("--min-strongest-distance", stage.cluster_filter.min_strongest_distance,
+                 "Least mean distance of the strongest dynamic cluster (px); 0 = the paper's rule")
+      ->capture_default_str()
+      ->group("Filter");
+  app.add_option("--screening-floor", stage.cluster_filter.screening_floor,
+                 "Least mean distance of a cluster for rough screening (px); 0 = the paper's rule")
+      ->capture_default_str()
+      ->group("Filter");
 }
 
 void declareTracking(CLI::App& app, SlamOptions& options) {
