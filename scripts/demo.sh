@@ -90,5 +90,6 @@ for filter in none hmc; do
       print ""
     }' "$output/$filter/timings.csv"
 done
+"$bin/hmcdyn_side_by_side" "$output/none/frames" "$output/hmc/frames" 4 "$output/frames.png"
 echo
-echo "Look at $output/comparison.png (trajectories and error over time) and at the annotated frames in $output/none/frames and $output/hmc/frames"
+echo "Look at $output/comparison.png (trajectories, error over time) and $output/frames.png (labels, filter off and on); all frames: $output/{none,hmc}/frames"

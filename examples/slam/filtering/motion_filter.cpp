@@ -12,9 +12,10 @@ namespace {
 std::vector<std::uint8_t> flagPeople(const KeyPoints& points, Span<const DetectionBox> boxes) {
   std::vector<std::uint8_t> in_person(points.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    in_person[i] = std::any_of(boxes.begin(), boxes.end(), [&](const DetectionBox& box) {
+    const bool inside = std::any_of(boxes.begin(), boxes.end(), [&](const DetectionBox& box) {
       return box.class_id == kPersonClassId && box.contains(points.u[i], points.v[i]);
     });
+    in_person[i] = inside ? 1 : 0;
   }
   return in_person;
 }
