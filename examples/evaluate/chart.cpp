@@ -122,7 +122,7 @@ cv::Rect2d rangeOf(const std::vector<ChartLine>& lines) {
     }
   }
   constexpr double kMargin = 0.05;
-  constexpr double kLeast = 1e-6;
+  constexpr double kLeast = 1e-4;
   const cv::Size2d size(std::max(high.x - low.x, kLeast), std::max(high.y - low.y, kLeast));
   return {low.x - kMargin * size.width, low.y - kMargin * size.height,
           (1.0 + 2.0 * kMargin) * size.width, (1.0 + 2.0 * kMargin) * size.height};

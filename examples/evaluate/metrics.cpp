@@ -21,6 +21,11 @@ Metric statisticMetric(const std::string& pointer, const std::string& title,
   return {pointer, title, 6, is_compared, [=](const Run& run) { return of(run).*field; }};
 }
 
+Metric pairsMetric(const std::string& pointer, const StatisticsOf& of) {
+  return {pointer, "pairs", 0, false,
+          [of](const Run& run) { return static_cast<double>(of(run).count); }};
+}
+
 std::vector<Metric> statisticsMetrics(const std::string& prefix, const StatisticsOf& of) {
   // The paper compares RMSE and standard deviation.
   return {statisticMetric(prefix + "/rmse", "rmse", &Statistics::rmse, true, of),
@@ -29,8 +34,7 @@ std::vector<Metric> statisticsMetrics(const std::string& prefix, const Statistic
           statisticMetric(prefix + "/std", "std", &Statistics::std, true, of),
           statisticMetric(prefix + "/min", "min", &Statistics::min, false, of),
           statisticMetric(prefix + "/max", "max", &Statistics::max, false, of),
-          {prefix + "/pairs", "pairs", 0, false,
-           [of](const Run& run) { return static_cast<double>(of(run).count); }}};
+          pairsMetric(prefix + "/pairs", of)};
 }
 
 Metric scaleMetric() {
@@ -69,7 +73,7 @@ std::string rpeHeading(const Arguments& arguments, const char* of) {
 std::vector<Metric> summaryColumns(const Arguments& arguments) {
   std::vector<Metric> columns{
       statisticMetric("", "ATE rmse (m)", &Statistics::rmse, true, ateOf),
-      statisticMetric("", "ATE std (m)", &Statistics::std, false, ateOf),
+      statisticMetric("", "ATE std (m)", &Statistics::std, false, ateOf), pairsMetric("", ateOf),
       statisticMetric("", "RPE rmse (m)", &Statistics::rmse, true, translationOf),
       statisticMetric("", "RPE rmse (deg)", &Statistics::rmse, true, rotationOf)};
   if (knowsFrames(arguments)) {

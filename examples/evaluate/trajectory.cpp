@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/trajectory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
