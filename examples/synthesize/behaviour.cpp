@@ -34,9 +34,8 @@ double cycleLength(double speed) { return 0.45 + 0.82 * speed; }
 class Wander {
  public:
   Wander(Random& random, double frequency) {
-    for (std::size_t i = 0; i < terms_.size(); ++i) {
-      terms_[i] = {2.0 * kPi * frequency * random.uniform(0.6, 1.6),
-                   random.uniform(0.0, 2.0 * kPi)};
+    for (auto& term : terms_) {
+      term = {2.0 * kPi * frequency * random.uniform(0.6, 1.6), random.uniform(0.0, 2.0 * kPi)};
     }
   }
   double at(double time) const {
@@ -66,10 +65,12 @@ class Player {
         left_hand_(random_, 0.9),
         right_hand_(random_, 0.8),
         liveliness_(random_, 0.15) {
+    // NOLINTBEGIN(cppcoreguidelines-prefer-member-initializer): drawn after the wandering
     position_ = behaviour.start;
     heading_ = behaviour.heading;
     sitting_ = behaviour.starts_seated ? 1.0 : 0.0;
     phase_ = random_.uniform();
+    // NOLINTEND(cppcoreguidelines-prefer-member-initializer)
   }
 
   Posture step(double dt) {

@@ -43,7 +43,10 @@ cv::Mat smoothNoise(cv::Size size, int cells, int octaves, double persistence, R
   return sum * (1.6 / total);
 }
 
-cv::Mat plain(cv::Size size, const Color& color) { return cv::Mat(size, CV_8UC3, color); }
+cv::Mat plain(cv::Size size, const Color& color) {
+  cv::Mat picture(size, CV_8UC3, color);
+  return picture;
+}
 
 void addField(cv::Mat& picture, const cv::Mat& field, double amplitude) {
   const auto strength = static_cast<float>(amplitude);

@@ -109,6 +109,7 @@ cv::Mat artPoster(std::uint64_t seed) {
         break;
       case 2: {
         std::vector<cv::Point> corners;
+        corners.reserve(6);
         for (int k = 0; k < random.integer(3, 6); ++k) {
           corners.emplace_back(p.x + random.integer(-size, size),
                                p.y + random.integer(-size, size));
@@ -244,6 +245,7 @@ cv::Mat screen(std::uint64_t seed) {
   Random random(seed);
   cv::Mat picture(cv::Size(640, 400), CV_8UC3);
   for (int y = 0; y < 400; ++y) {
+    // NOLINTNEXTLINE(bugprone-integer-division): grey levels are whole
     picture.row(y).setTo(Color(150 - y / 5, 90 + y / 8, 40 + y / 8));
   }
   const bool dark = random.chance(0.5);

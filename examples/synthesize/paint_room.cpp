@@ -229,6 +229,7 @@ cv::Mat windowView(std::uint64_t seed) {
   Random random(seed);
   cv::Mat picture(cv::Size(512, 512), CV_8UC3);
   for (int y = 0; y < 512; ++y) {
+    // NOLINTNEXTLINE(bugprone-integer-division): grey levels are whole
     picture.row(y).setTo(Color(250 - y / 8, 235 - y / 10, 205 - y / 9));
   }
   addField(picture, smoothNoise(picture.size(), 3, 5, 0.6, random), 14.0);

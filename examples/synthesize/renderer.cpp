@@ -39,7 +39,7 @@ struct RowAttributes {
   struct Linear {
     float start = 0.0f;
     float slope = 0.0f;
-    float at(int u) const { return start + slope * static_cast<float>(u); }
+    float at(int column) const { return start + slope * static_cast<float>(column); }
   };
   Linear inverse_depth, u, v, light;
   // Change of inverse depth and of u, v over the depth from row to row.

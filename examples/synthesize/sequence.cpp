@@ -100,7 +100,11 @@ class TextFile {
   template <class... Values>
   void line(const char* format, Values... values) {
     std::array<char, 512> text{};
-    std::snprintf(text.data(), text.size(), format, values...);
+    if constexpr (sizeof...(values) == 0) {
+      std::snprintf(text.data(), text.size(), "%s", format);
+    } else {
+      std::snprintf(text.data(), text.size(), format, values...);
+    }
     file_ << text.data() << '\n';
   }
   void close() {
