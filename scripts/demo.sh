@@ -86,7 +86,7 @@ for filter in none hmc; do
     NR > 1 { for (i in head) sum[i] += $i; ++rows }
     END {
       printf "  %-5s", name
-      for (i = 2; i in head; ++i) { sub(/_ms$/, "", head[i]); printf "  %s %.1f", head[i], sum[i] / rows }
+      for (i = 2; i in head; ++i) { sub(/_wall_ms$/, "", head[i]); printf "  %s %.1f", head[i], sum[i] / rows }
       print ""
     }' "$output/$filter/timings.csv"
 done
