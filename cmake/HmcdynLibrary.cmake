@@ -15,6 +15,8 @@ set(HMCDYN_CORE_HEADERS
     weights.hpp
     peer_rules.hpp
     filter_stage.hpp
+    surface_depth.hpp
+    motion_belief.hpp
     detail/kd_tree.hpp
     detail/minkowski.hpp)
 set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp dynamic_feature_filter.hpp)

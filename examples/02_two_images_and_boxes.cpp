@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
 
   const hmcdyn::EarlierFrameReport& report = result.earlier.front();
   std::printf("%zu of %zu key points matched; model: %s (%s), median distance %.2f px\n",
-              report.matches, points.size(), toString(report.motion.model.kind),
+              report.flow.found, points.size(), toString(report.motion.model.kind),
               toString(report.motion.verdict), report.motion.median_distance);
   std::printf("%zu dynamic, %zu kept in the moving box, %zu static outside\n",
               result.stage.frame.dynamic, result.stage.frame.suspect,

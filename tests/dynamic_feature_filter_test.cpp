@@ -21,6 +21,7 @@ using test::LayeredScene;
 /// Every option set, so that tests of rules do not depend on tuned defaults.
 DynamicFeatureFilterOptions fixedOptions() {
   DynamicFeatureFilterOptions options;
+  options.flow_background = 0;
   options.flow.window = 15;
   options.flow.max_level = 1;
   options.flow.max_iterations = 30;
@@ -224,7 +225,7 @@ TEST(DynamicFeatureFilter, FramesWhoseModelDoesNotHoldDoNotCount) {
   EXPECT_FALSE(result.earlier[0].used) << result.earlier[0].motion.median_distance;
   EXPECT_TRUE(result.earlier[1].used);
   EXPECT_FALSE(result.earlier[2].used);
-  EXPECT_EQ(result.earlier[2].matches, 0U);
+  EXPECT_EQ(result.earlier[2].flow.found, 0U);
   EXPECT_EQ(result.earlier[2].motion.verdict, FundamentalVerdict::kTooFewMatches);
   expectEqual(result.distance, good);
 }
@@ -255,7 +256,7 @@ TEST(DynamicFeatureFilter, IdenticalImagesAreACameraThatStandsStill) {
   ASSERT_EQ(result.earlier.size(), 1U);
   EXPECT_EQ(result.earlier[0].motion.verdict, FundamentalVerdict::kCameraStill);
   EXPECT_TRUE(result.earlier[0].used);
-  EXPECT_EQ(result.earlier[0].matches, points.size());
+  EXPECT_EQ(result.earlier[0].flow.found, points.size());
   for (const float distance : result.distance) {
     EXPECT_NEAR(distance, 0.0, 0.02);
   }

@@ -12,7 +12,9 @@
 #include <hmcdyn/ego_motion.hpp>
 #include <hmcdyn/filter_stage.hpp>
 #include <hmcdyn/fundamental.hpp>
+#include <hmcdyn/motion_belief.hpp>
 #include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/surface_depth.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
@@ -30,6 +32,20 @@ struct DynamicFeatureFilterOptions {
   DistanceKind distance = DistanceKind::kTwoView;
   EgoMotionOptions ego_motion;
   FilterStageOptions stage;
+
+  /// Optical flow is the dearest step: only the points that need a distance get one. These are all
+  /// points in a box or within this margin of one (px) ...
+  float flow_margin = 40.0f;
+  /// ... and so many others, spread over the image, for the camera's motion. 0 = all of them, and
+  /// in frames without a box, too.
+  int flow_background = 300;
+
+  /// Forms beliefs where the frame's depth image is given; not for the peers' rules.
+  bool use_belief = true;
+  SurfaceDepthOptions surface;
+  MotionBeliefOptions belief;
+  BeliefVerdictOptions belief_verdict;
+
   /// A model explains its frame pair well enough to speak of motion when the median distance of its
   /// matches stays below this (px); distances to other frames are not used.
   float max_median_distance = 0.5f;
@@ -53,11 +69,14 @@ struct DynamicFeatureFilterInput {
   Span<const DetectionBox> boxes;        ///< Of the current frame.
   Span<const EarlierFrame> earlier;      ///< Frames to compare with; may be empty.
   PinholeCamera camera;                  ///< Needed for the ego-motion distance.
+  DepthImageView depth = {};             ///< Of the current frame (m); empty = no beliefs.
+  /// `belief` of the result for earlier[0]; null = none.
+  const MotionBelief* memory = nullptr;
 };
 
 /// What one earlier frame contributed.
 struct EarlierFrameReport {
-  std::size_t matches = 0;     ///< Key points found there.
+  FlowMatches flow;            ///< Where the N key points were.
   MotionModelEstimate motion;  ///< The model, and whether F was defined.
   bool used = false;           ///< Its distances count.
 };
@@ -66,17 +85,22 @@ struct DynamicFeatureFilterResult {
   std::vector<float> distance;              ///< N distances (px), NaN = none.
   FilterStageResult stage;                  ///< Labels, weights, clusters; boxes and frame.
   std::vector<EarlierFrameReport> earlier;  ///< One an earlier frame.
+  MotionBelief belief;                      ///< The next frame's memory; empty without a depth image.
 };
 
 /// Memory that filterDynamicFeatures reuses from frame to frame.
 struct DynamicFeatureFilterWorkspace {
   FilterStageWorkspace stage;
+  MotionBeliefWorkspace belief;
   std::vector<float> distance;
 };
 
 /// Tracks the key points into every earlier frame, estimates the camera's motion, measures each
-/// point's distance (the largest over the earlier frames whose model holds), and labels and weighs
-/// the points. Pure: the same input and seeds give the same result.
+/// point's distance (the largest over the earlier frames whose model holds), labels and weighs the
+/// points, and lets them vote on each other. Pure: the same input and seeds give the same result.
+///
+/// Without a box and without a memory of something that moves there is nothing to decide: no flow
+/// is computed, and all points are static (flow_background = 0 computes it all the same).
 ///
 /// Without an earlier frame, or where no model holds, no point has a distance: all are static, and
 /// the reports say why.

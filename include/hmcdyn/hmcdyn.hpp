@@ -14,6 +14,8 @@
 #include <hmcdyn/weights.hpp>
 #include <hmcdyn/peer_rules.hpp>
 #include <hmcdyn/filter_stage.hpp>
+#include <hmcdyn/surface_depth.hpp>
+#include <hmcdyn/motion_belief.hpp>
 #include <hmcdyn/dynamic_feature_filter.hpp>
 #include <hmcdyn/pose_refinement.hpp>
 // clang-format on

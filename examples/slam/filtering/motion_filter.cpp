@@ -48,8 +48,8 @@ void MotionFilter::forgetBefore(double timestamp) {
   }
 }
 
-DynamicFeatureFilterResult MotionFilter::filter(const cv::Mat& gray, Span<const DetectionBox> boxes,
-                                                Frame& frame) {
+DynamicFeatureFilterResult MotionFilter::filter(const cv::Mat& gray, const cv::Mat& depth,
+                                                Span<const DetectionBox> boxes, Frame& frame) {
   Remembered current{frame.timestamp, buildFlowPyramid(gray, options_.filter.flow)};
   const std::vector<EarlierFrame> earlier = options_.filter.stage.rule == FilterRule::kNone
                                                 ? std::vector<EarlierFrame>{}
@@ -59,7 +59,10 @@ DynamicFeatureFilterResult MotionFilter::filter(const cv::Mat& gray, Span<const 
   input.points = frame.points.view();
   input.boxes = boxes;
   input.earlier = earlier;
+  input.depth = {depth.ptr<float>(), depth.cols, depth.rows, depth.step1()};
+  input.memory = &memory_;
   DynamicFeatureFilterResult result = filterDynamicFeatures(input, options_.filter, workspace_);
+  memory_ = result.belief;
 
   const FrameDecision& decision = result.stage.frame;
   frame.label = result.stage.label;

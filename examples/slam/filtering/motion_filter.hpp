@@ -29,9 +29,9 @@ class MotionFilter {
   explicit MotionFilter(MotionFilterOptions options);
 
   /// Filters the frame's key points and remembers its image.
-  /// @param gray CV_8UC1, undistorted.
-  DynamicFeatureFilterResult filter(const cv::Mat& gray, Span<const DetectionBox> boxes,
-                                    Frame& frame);
+  /// @param gray CV_8UC1, undistorted. @param depth CV_32FC1 (m), of the same size.
+  DynamicFeatureFilterResult filter(const cv::Mat& gray, const cv::Mat& depth,
+                                    Span<const DetectionBox> boxes, Frame& frame);
 
  private:
   struct Remembered {
@@ -45,6 +45,7 @@ class MotionFilter {
   MotionFilterOptions options_;
   DynamicFeatureFilterWorkspace workspace_;
   std::deque<Remembered> history_;
+  MotionBelief memory_;  ///< What the last frame believed.
 };
 
 }  // namespace hmcdyn::slam

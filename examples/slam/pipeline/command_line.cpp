@@ -144,6 +144,43 @@ void declareFilter(CLI::App& app, SlamOptions& options) {
       ->group("Filter");
 }
 
+void declareBelief(CLI::App& app, SlamOptions& options) {
+  DynamicFeatureFilterOptions& filter = options.filter.filter;
+  MotionBeliefOptions& belief = filter.belief;
+  app.add_flag("!--no-belief", filter.use_belief,
+               "Without the votes of neighbours and of earlier frames: the paper's filter alone")
+      ->group("Belief");
+  app.add_option("--vote-sigma", belief.sigma, "Reach of a vote within the frame (px)")
+      ->capture_default_str()
+      ->group("Belief");
+  app.add_option("--memory-gain", belief.memory_gain,
+                 "Weight of what earlier frames believed against the votes of the frame")
+      ->capture_default_str()
+      ->group("Belief");
+  app.add_option("--quiet-weight", belief.quiet_weight,
+                 "Weight of a vote for \"at rest\" in a box, 0..1: people pause")
+      ->capture_default_str()
+      ->group("Belief");
+  app.add_option("--dynamic-belief", belief.dynamic_belief,
+                 "A point believed to move by more than this is dynamic, 0..1")
+      ->capture_default_str()
+      ->group("Belief");
+  OpticalFlowOptions& flow = filter.flow;
+  app.add_option("--flow-window", flow.window, "Side of the window of optical flow (px, odd)")
+      ->capture_default_str()
+      ->group("Belief");
+  app.add_option("--flow-iterations", flow.max_iterations, "Iterations of optical flow a level")
+      ->capture_default_str()
+      ->group("Belief");
+  app.add_option("--flow-level", flow.max_level, "Coarsest pyramid level of optical flow")
+      ->capture_default_str()
+      ->group("Belief");
+  app.add_option("--flow-background", filter.flow_background,
+                 "Key points far from every box that are followed for the camera's motion; 0 = all")
+      ->capture_default_str()
+      ->group("Belief");
+}
+
 void declareTracking(CLI::App& app, SlamOptions& options) {
   app.add_option("--features", options.features.features, "ORB key points a frame")
       ->capture_default_str()
@@ -193,6 +230,7 @@ void declareOptions(CLI::App& app, SlamOptions& options) {
   declareInput(app, options);
   declareDetection(app, options);
   declareFilter(app, options);
+  declareBelief(app, options);
   declareTracking(app, options);
   declareOutput(app, options);
 }

@@ -56,7 +56,7 @@ FrameOutcome Pipeline::process(const RgbdFrame& raw) {
                      image.depth, extractor_.options().scale_factor);
   });
   outcome.filtered =
-      times.measure("filter", [&] { return filter_.filter(image.gray, outcome.boxes, frame); });
+      times.measure("filter", [&] { return filter_.filter(image.gray, image.depth, outcome.boxes, frame); });
   outcome.points = frame.points;
   outcome.weight = frame.weight;
   outcome.tracking = times.measure("track", [&] { return tracker_.track(std::move(frame)); });
