@@ -21,10 +21,10 @@ void checkInput(const DynamicFeatureFilterInput& input,
     throw std::invalid_argument("filterDynamicFeatures: pyramid of the current frame is null");
   }
   if (options.flow_background < 0 || !(options.flow_margin >= 0.0f)) {
-    throw std::invalid_argument(
-        "DynamicFeatureFilterOptions: flow_background is " +
-        std::to_string(options.flow_background) + ", flow_margin " +
-        std::to_string(options.flow_margin) + "; expected a count and a margin (px) >= 0");
+    throw std::invalid_argument("DynamicFeatureFilterOptions: flow_background is " +
+                                std::to_string(options.flow_background) + ", flow_margin " +
+                                std::to_string(options.flow_margin) +
+                                "; expected a count and a margin (px) >= 0");
   }
   for (const EarlierFrame& frame : input.earlier) {
     if (frame.pyramid == nullptr) {
@@ -156,10 +156,27 @@ FlowSelection selectForFlow(const DynamicFeatureFilterInput& input,
   return selection;
 }
 
+/// Where the chosen points were in `frame` if they kept the pace that they had since `younger`.
+FlowMatches prolonged(const FlowSelection& selection, const EarlierFrame& frame,
+                      const EarlierFrame& younger, const FlowMatches& flow) {
+  FlowMatches guess;
+  if (!(frame.age > 0.0 && younger.age > 0.0)) {
+    return guess;
+  }
+  const auto ratio = static_cast<float>(frame.age / younger.age);
+  for (std::size_t k = 0; k < selection.source.size(); ++k) {
+    const std::size_t i = selection.source[k];
+    guess.u.push_back(selection.points.u[k] + ratio * (flow.u[i] - selection.points.u[k]));
+    guess.v.push_back(selection.points.v[k] + ratio * (flow.v[i] - selection.points.v[k]));
+  }
+  return guess;
+}
+
 FlowMatches flowOf(const FlowSelection& selection, const EarlierFrame& frame,
-                   const DynamicFeatureFilterInput& input, const OpticalFlowOptions& options) {
-  const FlowMatches found =
-      trackIntoEarlierFrame(*input.pyramid, *frame.pyramid, selection.points.view(), options);
+                   const DynamicFeatureFilterInput& input, const OpticalFlowOptions& options,
+                   const FlowMatches& guess) {
+  const FlowMatches found = trackIntoEarlierFrame(*input.pyramid, *frame.pyramid,
+                                                  selection.points.view(), options, guess);
   FlowMatches all;
   all.u.assign(input.points.size(), kNaN);
   all.v.assign(input.points.size(), kNaN);
@@ -172,13 +189,14 @@ FlowMatches flowOf(const FlowSelection& selection, const EarlierFrame& frame,
 }
 
 /// Steps 1 to 3 against one earlier frame; larger distances go into `distance`.
-EarlierFrameReport compareWith(const EarlierFrame& frame, const FlowSelection& selection,
+EarlierFrameReport compareWith(const EarlierFrame& frame, const FlowMatches& guess,
+                               const FlowSelection& selection,
                                const DynamicFeatureFilterInput& input,
                                const DynamicFeatureFilterOptions& options,
                                DynamicFeatureFilterWorkspace& workspace,
                                std::vector<float>& distance) {
   EarlierFrameReport report;
-  report.flow = flowOf(selection, frame, input, options.flow);
+  report.flow = flowOf(selection, frame, input, options.flow, guess);
   const PointPairsView pairs{report.flow.u, report.flow.v, input.points.u, input.points.v};
   if (options.distance != DistanceKind::kEgoMotion) {
     report.motion = estimateMotionModel(pairs, input.boxes, options.motion);
@@ -220,9 +238,8 @@ DynamicFeatureFilterResult withBelief(DynamicFeatureFilterResult result,
   const MotionBelief nothing;
   result.belief = updateMotionBelief(votes, input.memory != nullptr ? *input.memory : nothing,
                                      options.belief, workspace.belief);
-  result.stage =
-      applyMotionBelief(result.belief, in_box, workspace.belief.surface.is_dragged,
-                        std::move(result.stage), options.belief, options.belief_verdict);
+  result.stage = applyMotionBelief(result.belief, in_box, workspace.belief.surface.is_dragged,
+                                   std::move(result.stage), options.belief, options.belief_verdict);
   return result;
 }
 
@@ -237,9 +254,13 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
   result.distance.assign(input.points.size(), kNaN);
   if (distancesWanted(input, options)) {
     const FlowSelection selection = selectForFlow(input, options);
-    for (const EarlierFrame& frame : input.earlier) {
+    for (std::size_t k = 0; k < input.earlier.size(); ++k) {
+      const EarlierFrame& frame = input.earlier[k];
+      const FlowMatches guess =
+          k == 0 ? FlowMatches{}
+                 : prolonged(selection, frame, input.earlier[k - 1], result.earlier[k - 1].flow);
       result.earlier.push_back(
-          compareWith(frame, selection, input, options, workspace, result.distance));
+          compareWith(frame, guess, selection, input, options, workspace, result.distance));
     }
   }
   result.stage =

@@ -25,6 +25,9 @@ void checkOptions(const OpticalFlowOptions& options) {
   require(options.max_level >= 0, "max_level", options.max_level, "a level >= 0");
   require(options.max_iterations >= 1, "max_iterations", options.max_iterations, "a count >= 1");
   require(options.epsilon > 0.0f, "epsilon", options.epsilon, "a value > 0 (px)");
+  require(options.guess_max_level >= 0, "guess_max_level", options.guess_max_level, "a level >= 0");
+  require(options.max_difference > 0.0f, "max_difference", options.max_difference,
+          "a value > 0 (gray levels)");
   require(options.max_forward_backward_error > 0.0f, "max_forward_backward_error",
           options.max_forward_backward_error, "a value > 0 (px)");
 }
@@ -38,10 +41,51 @@ int borderOf(const FlowPyramid& pyramid) {
                    whole.height - offset.y - pyramid.front().rows});
 }
 
+/// The points that take part, and where each is looked for.
+struct FlowStarts {
+  std::vector<std::size_t> source;  ///< Which key point each is.
+  std::vector<cv::Point2f> start;
+  std::vector<cv::Point2f> back;  ///< Guesses; empty without any.
+};
+
 /// False for NaN, too.
 bool isInside(const cv::Size& size, float u, float v) {
   return u >= 0.0f && u <= static_cast<float>(size.width - 1) && v >= 0.0f &&
          v <= static_cast<float>(size.height - 1);
+}
+
+FlowStarts collectStarts(const cv::Size& size, const KeyPointsView& points,
+                         const FlowMatches& guess) {
+  FlowStarts starts;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!isInside(size, points.u[i], points.v[i])) {
+      continue;
+    }
+    starts.source.push_back(i);
+    starts.start.emplace_back(points.u[i], points.v[i]);
+    if (!guess.u.empty()) {
+      starts.back.push_back(isInside(size, guess.u[i], guess.v[i])
+                                ? cv::Point2f(guess.u[i], guess.v[i])
+                                : starts.start.back());
+    }
+  }
+  return starts;
+}
+
+/// 1 for each match that leads back to its start.
+std::vector<std::uint8_t> checkForth(const FlowPyramid& current, const FlowPyramid& earlier,
+                                     const FlowStarts& starts, const OpticalFlowOptions& options,
+                                     const cv::TermCriteria& until) {
+  std::vector<cv::Point2f> forth;
+  std::vector<std::uint8_t> found;
+  cv::calcOpticalFlowPyrLK(earlier, current, starts.back, forth, found, cv::noArray(),
+                           cv::Size(options.window, options.window), options.max_level, until);
+  for (std::size_t k = 0; k < forth.size(); ++k) {
+    const cv::Point2f loop = forth[k] - starts.start[k];
+    const bool returned = std::hypot(loop.x, loop.y) <= options.max_forward_backward_error;
+    found[k] = found[k] != 0 && returned ? 1 : 0;
+  }
+  return found;
 }
 
 }  // namespace
@@ -65,7 +109,8 @@ FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& opti
 }
 
 FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid& earlier,
-                                  const KeyPointsView& points, const OpticalFlowOptions& options) {
+                                  const KeyPointsView& points, const OpticalFlowOptions& options,
+                                  const FlowMatches& guess) {
   checkOptions(options);
   checkKeyPoints(points);
   if (current.empty() || earlier.empty() || current.front().size() != earlier.front().size()) {
@@ -79,41 +124,39 @@ FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid&
                                 std::to_string(options.window) + ", but a pyramid was built for " +
                                 std::to_string(border) + "; expected at most that");
   }
+  if (!guess.u.empty() && (guess.u.size() != points.size() || guess.v.size() != points.size())) {
+    throw std::invalid_argument("trackIntoEarlierFrame: " + std::to_string(points.size()) +
+                                " key points, but guesses for " + std::to_string(guess.u.size()) +
+                                " columns and " + std::to_string(guess.v.size()) +
+                                " rows; expected equal sizes, or none");
+  }
   const cv::Size size = current.front().size();
-
   FlowMatches matches;
   matches.u.assign(points.size(), kNaN);
   matches.v.assign(points.size(), kNaN);
-  std::vector<std::size_t> source;  // which key point each tracked point is
-  std::vector<cv::Point2f> start;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (isInside(size, points.u[i], points.v[i])) {
-      source.push_back(i);
-      start.emplace_back(points.u[i], points.v[i]);
-    }
-  }
-  if (start.empty()) {
+  FlowStarts starts = collectStarts(size, points, guess);
+  if (starts.start.empty()) {
     return matches;
   }
 
-  const cv::Size window(options.window, options.window);
   const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS,
                                options.max_iterations, options.epsilon);
-  std::vector<cv::Point2f> back;
-  std::vector<cv::Point2f> forth;
-  std::vector<std::uint8_t> found_back;
-  std::vector<std::uint8_t> found_forth;
-  std::vector<float> error;
-  cv::calcOpticalFlowPyrLK(current, earlier, start, back, found_back, error, window,
-                           options.max_level, until);
-  cv::calcOpticalFlowPyrLK(earlier, current, back, forth, found_forth, error, window,
-                           options.max_level, until);
-  for (std::size_t k = 0; k < start.size(); ++k) {
-    const cv::Point2f loop = forth[k] - start[k];
-    if (found_back[k] != 0 && found_forth[k] != 0 && isInside(size, back[k].x, back[k].y) &&
-        std::hypot(loop.x, loop.y) <= options.max_forward_backward_error) {
-      matches.u[source[k]] = back[k].x;
-      matches.v[source[k]] = back[k].y;
+  const bool guessed = !starts.back.empty();
+  std::vector<std::uint8_t> found;
+  std::vector<float> difference;
+  cv::calcOpticalFlowPyrLK(
+      current, earlier, starts.start, starts.back, found, difference,
+      cv::Size(options.window, options.window),
+      guessed ? std::min(options.guess_max_level, options.max_level) : options.max_level, until,
+      guessed ? static_cast<int>(cv::OPTFLOW_USE_INITIAL_FLOW) : 0);
+  const std::vector<std::uint8_t> returned =
+      options.forward_backward ? checkForth(current, earlier, starts, options, until) : found;
+  for (std::size_t k = 0; k < starts.start.size(); ++k) {
+    const cv::Point2f& back = starts.back[k];
+    if (found[k] != 0 && returned[k] != 0 && difference[k] <= options.max_difference &&
+        isInside(size, back.x, back.y)) {
+      matches.u[starts.source[k]] = back.x;
+      matches.v[starts.source[k]] = back.y;
       ++matches.found;
     }
   }

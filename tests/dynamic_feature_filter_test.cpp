@@ -25,6 +25,7 @@ DynamicFeatureFilterOptions fixedOptions() {
   options.flow.window = 15;
   options.flow.max_level = 1;
   options.flow.max_iterations = 30;
+  options.flow.forward_backward = true;
   options.flow.epsilon = 0.01f;
   options.flow.max_forward_backward_error = 0.5f;
   options.motion.min_matches = 12;

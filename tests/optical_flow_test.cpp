@@ -24,7 +24,9 @@ OpticalFlowOptions fixedOptions() {
   options.max_level = 2;
   options.max_iterations = 30;
   options.epsilon = 0.01f;
+  options.forward_backward = true;
   options.max_forward_backward_error = 0.5f;
+  options.max_difference = 255.0f;
   return options;
 }
 

@@ -59,7 +59,10 @@ struct EarlierFrame {
   /// distance.
   cv::Mat depth;
   /// Motion of the camera since then, as far as it is known; needed for the ego-motion distance.
-  std::optional<Eigen::Isometry3d> current_from_earlier;
+  std::optional<Eigen::Isometry3d> current_from_earlier = std::nullopt;
+  /// Time since then (s); 0 = unknown. With it the flow to the frame before in the list, prolonged,
+  /// is where the search starts.
+  double age = 0.0;
 };
 
 /// One frame's input.
@@ -85,7 +88,7 @@ struct DynamicFeatureFilterResult {
   std::vector<float> distance;              ///< N distances (px), NaN = none.
   FilterStageResult stage;                  ///< Labels, weights, clusters; boxes and frame.
   std::vector<EarlierFrameReport> earlier;  ///< One an earlier frame.
-  MotionBelief belief;                      ///< The next frame's memory; empty without a depth image.
+  MotionBelief belief;  ///< The next frame's memory; empty without a depth image.
 };
 
 /// Memory that filterDynamicFeatures reuses from frame to frame.

@@ -95,11 +95,11 @@ struct MotionBelief {
 /// What a frame's points are judged by. All of one size N, borrowed.
 struct MotionBeliefInput {
   KeyPointsView points;
-  Span<const float> distance;          ///< Distances (px), NaN = none.
-  Span<const PointLabel> label;        ///< Verdicts of the steps before.
-  Span<const std::uint8_t> in_box;     ///< 1 in a detection box, whether or not it is dynamic.
-  Span<const float> earlier_u;         ///< Columns in the frame of the memory (px); empty = none.
-  Span<const float> earlier_v;         ///< Rows there; a NaN stands for "where it is now".
+  Span<const float> distance;       ///< Distances (px), NaN = none.
+  Span<const PointLabel> label;     ///< Verdicts of the steps before.
+  Span<const std::uint8_t> in_box;  ///< 1 in a detection box, whether or not it is dynamic.
+  Span<const float> earlier_u;      ///< Columns in the frame of the memory (px); empty = none.
+  Span<const float> earlier_v;      ///< Rows there; a NaN stands for "where it is now".
 };
 
 namespace detail {
@@ -155,8 +155,8 @@ inline VoteSum countVotes(const Votes& votes, float u, float v, float depth, flo
 
 /// What a point's own distance says: 0 at rest .. 1 moving.
 inline float ownEvidence(float distance, PointLabel label, const MotionBeliefOptions& options) {
-  const float ramp = (distance - options.still_distance) /
-                     (options.moving_distance - options.still_distance);
+  const float ramp =
+      (distance - options.still_distance) / (options.moving_distance - options.still_distance);
   const float evidence = std::clamp(ramp, 0.0f, 1.0f);
   return label == PointLabel::kDynamic ? std::max(evidence, options.dynamic_evidence) : evidence;
 }
@@ -175,9 +175,9 @@ inline float ownWeight(float evidence, SurfaceSupport support, bool is_dragged, 
 /// Memory that updateMotionBelief reuses from frame to frame.
 struct MotionBeliefWorkspace {
   SurfaceDepths surface;
-  detail::Votes votes;            ///< Of this frame's measured points.
-  detail::Votes memory;           ///< All that the frame before believed.
-  detail::Votes dynamic_memory;   ///< What it believed to move.
+  detail::Votes votes;           ///< Of this frame's measured points.
+  detail::Votes memory;          ///< All that the frame before believed.
+  detail::Votes dynamic_memory;  ///< What it believed to move.
   Eigen::ArrayXf scratch;
 };
 
@@ -190,10 +190,10 @@ inline void collectVotes(const MotionBeliefInput& input, const MotionBelief& mem
   for (std::size_t i = 0; i < input.points.size(); ++i) {
     if (current.depth[i] > 0.0f && !std::isnan(input.distance[i])) {
       const float evidence = ownEvidence(input.distance[i], input.label[i], options);
-      workspace.votes.add(input.points.u[i], input.points.v[i], current.depth[i], evidence,
-                          ownWeight(evidence, workspace.surface.support[i],
-                                    workspace.surface.is_dragged[i] != 0, input.in_box[i] != 0,
-                                    options));
+      workspace.votes.add(
+          input.points.u[i], input.points.v[i], current.depth[i], evidence,
+          ownWeight(evidence, workspace.surface.support[i], workspace.surface.is_dragged[i] != 0,
+                    input.in_box[i] != 0, options));
     }
   }
   workspace.memory.reserve(memory.size());
@@ -235,8 +235,7 @@ inline std::pair<float, float> judge(const MotionBeliefInput& input, std::size_t
   VoteSum sum = count(workspace.votes, u, v, options.sigma);
   const VoteSum memory = count(workspace.memory, earlier_u, earlier_v, options.memory_sigma);
   if (memory.weight > 0.0f) {
-    const float gain =
-        options.memory_gain * std::min(1.0f, options.weight_cap / memory.weight);
+    const float gain = options.memory_gain * std::min(1.0f, options.weight_cap / memory.weight);
     sum.value += gain * memory.value;
     sum.weight += gain * memory.weight;
   }
@@ -322,9 +321,9 @@ struct BeliefVerdictOptions {
 
 /// Turns beliefs into labels and weights, for the points in boxes and for those believed to move.
 /// Believed to move: dynamic, weight 0. Else a point that the steps before called dynamic or
-/// unmatched becomes suspect; a suspect's weight is multiplied with 1 - belief. Unjudged points keep
-/// what the steps before said, unless a nearer surface may have dragged them: then they are suspect
-/// at best. A box's decision stays as it was.
+/// unmatched becomes suspect; a suspect's weight is multiplied with 1 - belief. Unjudged points
+/// keep what the steps before said, unless a nearer surface may have dragged them: then they are
+/// suspect at best. A box's decision stays as it was.
 ///
 /// @param stage of the same N points. @param in_box N flags.
 /// @throws std::invalid_argument when sizes differ or a weight is out of range.
@@ -340,8 +339,7 @@ inline FilterStageResult applyMotionBelief(const MotionBelief& belief,
     throw std::invalid_argument("applyMotionBelief: " + std::to_string(n) + " labels, but " +
                                 std::to_string(belief.size()) + " beliefs, " +
                                 std::to_string(in_box.size()) + " and " +
-                                std::to_string(is_dragged.size()) +
-                                " flags; expected equal sizes");
+                                std::to_string(is_dragged.size()) + " flags; expected equal sizes");
   }
   if (!(verdict.dragged_weight >= 0.0f && verdict.dragged_weight <= 1.0f)) {
     throw std::invalid_argument("BeliefVerdictOptions::dragged_weight is " +

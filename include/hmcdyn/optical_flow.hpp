@@ -11,13 +11,18 @@
 
 namespace hmcdyn {
 
-/// Pyramidal Lucas-Kanade (Bouguet 2001) with a forward-backward check (Kalal, Mikolajczyk, Matas
-/// 2010).
+/// Pyramidal Lucas-Kanade (Bouguet 2001), and two ways to tell a wrong match: what its window looks
+/// like, and a forward-backward check (Kalal, Mikolajczyk, Matas 2010) for twice the time. On
+/// rendered scenes both leave the same labels; docs/parameters.md has the figures.
 struct OpticalFlowOptions {
-  int window = 21;                          ///< Side of the square window (px), odd, at least 3.
-  int max_level = 2;                        ///< Coarsest pyramid level, 0 = the image itself.
-  int max_iterations = 30;                  ///< A level.
-  float epsilon = 0.01f;                    ///< A level's iterations end below this step (px).
+  int window = 11;          ///< Side of the square window (px), odd, at least 3.
+  int max_level = 2;        ///< Coarsest pyramid level, 0 = the image itself.
+  int guess_max_level = 1;  ///< The same where a guess is given; at most max_level counts.
+  int max_iterations = 10;  ///< A level.
+  float epsilon = 0.01f;    ///< A level's iterations end below this step (px).
+  /// A match whose window differs by more than this is dropped (mean absolute gray level).
+  float max_difference = 12.0f;
+  bool forward_backward = false;            ///< Also tracks forth again.
   float max_forward_backward_error = 0.5f;  ///< Farther from its start, a match is dropped (px).
 };
 
@@ -35,13 +40,16 @@ struct FlowMatches {
   std::size_t found = 0;  ///< Points that are not NaN.
 };
 
-/// Tracks the current frame's key points back into the earlier frame, and forth again as a check,
-/// so that every key point of the current frame gets its own match. Key points outside the image or
-/// not finite are lost, not an error; so are those whose match would lie outside the earlier image.
+/// Tracks the current frame's key points back into the earlier frame, so that every key point of
+/// the current frame gets its own match. Key points outside the image or not finite are lost, not
+/// an error; so are those whose match would lie outside the earlier image.
+/// @param guess where the N points may have been (px), e.g. the motion since a younger frame,
+/// prolonged; NaN = no guess for this point; empty = none for any.
 /// @throws std::invalid_argument for an empty pyramid, pyramids of different image sizes, unequal
 /// arrays, a window larger than a pyramid was built for, or another bad option.
 FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid& earlier,
                                   const KeyPointsView& points,
-                                  const OpticalFlowOptions& options = {});
+                                  const OpticalFlowOptions& options = {},
+                                  const FlowMatches& guess = {});
 
 }  // namespace hmcdyn

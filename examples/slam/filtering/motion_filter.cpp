@@ -37,6 +37,7 @@ std::vector<EarlierFrame> MotionFilter::selectEarlier(double timestamp) const {
     last = &*youngest;
     EarlierFrame frame;
     frame.pyramid = &youngest->pyramid;
+    frame.age = timestamp - youngest->timestamp;
     earlier.push_back(frame);
   }
   return earlier;

@@ -175,6 +175,9 @@ void declareBelief(CLI::App& app, SlamOptions& options) {
   app.add_option("--flow-level", flow.max_level, "Coarsest pyramid level of optical flow")
       ->capture_default_str()
       ->group("Belief");
+  app.add_flag("--forward-backward", flow.forward_backward,
+               "Check matches of optical flow by tracking forth again, for twice the time")
+      ->group("Belief");
   app.add_option("--flow-background", filter.flow_background,
                  "Key points far from every box that are followed for the camera's motion; 0 = all")
       ->capture_default_str()

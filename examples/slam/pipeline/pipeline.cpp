@@ -55,8 +55,8 @@ FrameOutcome Pipeline::process(const RgbdFrame& raw) {
     return makeFrame(image.index, image.timestamp, extractor_.extract(image.gray, valid_mask_),
                      image.depth, extractor_.options().scale_factor);
   });
-  outcome.filtered =
-      times.measure("filter", [&] { return filter_.filter(image.gray, image.depth, outcome.boxes, frame); });
+  outcome.filtered = times.measure(
+      "filter", [&] { return filter_.filter(image.gray, image.depth, outcome.boxes, frame); });
   outcome.points = frame.points;
   outcome.weight = frame.weight;
   outcome.tracking = times.measure("track", [&] { return tracker_.track(std::move(frame)); });
