@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/optimization/bundle_adjustment.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <memory>
+#include <utility>
+
+#include <ceres/iteration_callback.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include "slam/optimization/bundle_cost.hpp"
+#include "slam/optimization/optimization_input.hpp"
+#include "slam/optimization/se3_manifold.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+using Mask = std::vector<std::uint8_t>;
+
+void checkOptions(const BundleOptions& options) {
+  requireNotNegative("options.depth_noise_floor", options.depth_noise_floor);
+  requireNotNegative("options.depth_noise_quadratic", options.depth_noise_quadratic);
+  requirePositive("options.depth_noise_floor + options.depth_noise_quadratic",
+                  options.depth_noise_floor + options.depth_noise_quadratic);
+  requirePositive("options.huber_two_rows", options.huber_two_rows);
+  requirePositive("options.huber_three_rows", options.huber_three_rows);
+  requireAtLeast("options.rounds", options.rounds, 1);
+  require(options.plain_rounds >= 0 && options.plain_rounds <= options.rounds,
+          "options.plain_rounds", std::to_string(options.plain_rounds),
+          "0..options.rounds, " + std::to_string(options.rounds));
+  requirePositive("options.chi2_two_rows", options.chi2_two_rows);
+  requirePositive("options.chi2_three_rows", options.chi2_three_rows);
+  requirePositive("options.min_depth", options.min_depth);
+  requireAtLeast("options.max_iterations", options.max_iterations, 1);
+  requireNotNegative("options.function_tolerance", options.function_tolerance);
+  requireAtLeast("options.max_dense_poses", options.max_dense_poses, 0);
+  requireAtLeast("options.threads", options.threads, 1);
+}
+
+void checkProblem(const BundleProblem& problem) {
+  requirePositive("camera.fx", problem.camera.fx);
+  requirePositive("camera.fy", problem.camera.fy);
+  require(std::isfinite(problem.camera.cx) && std::isfinite(problem.camera.cy), "camera.cx, cy",
+          "not finite", "finite");
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    requireRigid("poses[" + std::to_string(i) + "]", problem.poses[i].camera_from_world);
+  }
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    const BundleObservation& observation = problem.observations[i];
+    const auto good = [](float value) { return std::isfinite(value) && value >= 0.0f; };
+    // The names are made only where they are needed: there are many observations.
+    if (observation.pose < 0 || observation.point < 0 || !good(observation.sigma) ||
+        observation.sigma == 0.0f || !good(observation.weight) ||
+        static_cast<std::size_t>(observation.pose) >= problem.poses.size() ||
+        static_cast<std::size_t>(observation.point) >= problem.points.size()) {
+      const std::string name = "observations[" + std::to_string(i) + "].";
+      requireIndex(name + "pose", observation.pose, problem.poses.size());
+      requireIndex(name + "point", observation.point, problem.points.size());
+      requirePositive(name + "sigma", observation.sigma);
+      requireNotNegative(name + "weight", observation.weight);
+    }
+  }
+}
+
+/// An observation that may take part: finite and of positive weight.
+struct Candidate {
+  std::size_t index = 0;  ///< In the caller's observations.
+  std::size_t pose = 0;
+  std::size_t point = 0;
+  double weight = 1.0;
+  BundleMeasurement measurement;
+};
+
+bool isFinite(const BundleObservation& observation, const Eigen::Vector3d& point) {
+  return std::isfinite(observation.u) && std::isfinite(observation.v) && point.allFinite();
+}
+
+std::vector<Candidate> collect(const BundleProblem& problem, const BundleOptions& options,
+                               std::size_t& not_finite) {
+  std::vector<Candidate> candidates;
+  candidates.reserve(problem.observations.size());
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    const BundleObservation& observation = problem.observations[i];
+    if (!isFinite(observation, problem.points[static_cast<std::size_t>(observation.point)])) {
+      ++not_finite;
+    } else if (observation.weight > 0.0f) {
+      candidates.push_back({i, static_cast<std::size_t>(observation.pose),
+                            static_cast<std::size_t>(observation.point), observation.weight,
+                            measurementOf(observation, options)});
+    }
+  }
+  return candidates;
+}
+
+/// The unknowns in the form in which Ceres moves them.
+struct State {
+  std::vector<PoseVector> poses;
+  std::vector<Eigen::Vector3d> points;
+};
+
+/// In front of its camera and, with `chi2`, in agreement with the state.
+Mask choose(const std::vector<Candidate>& candidates, const State& state, const BundleModel& model,
+            const BundleOptions& options, bool chi2) {
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(state.poses.size());
+  for (const PoseVector& pose : state.poses) {
+    poses.push_back(toIsometry(pose));
+  }
+  Mask mask;
+  mask.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) {
+    const Eigen::Vector3d p = poses[candidate.pose] * state.points[candidate.point];
+    const double limit =
+        candidate.measurement.rows == 3 ? options.chi2_three_rows : options.chi2_two_rows;
+    const bool good =
+        p.z() >= model.min_depth &&
+        (!chi2 || bundleResidual(candidate.measurement, model, p).squaredNorm() <= limit);
+    mask.push_back(good ? 1 : 0);
+  }
+  return mask;
+}
+
+/// What a round may move.
+struct Freedom {
+  Mask active;     ///< One entry a candidate.
+  Mask free_pose;  ///< One entry a pose.
+  std::size_t observations = 0;
+  std::size_t free_poses = 0;
+};
+
+Freedom freedomOf(const BundleProblem& problem, const std::vector<Candidate>& candidates,
+                  Mask active) {
+  std::vector<int> rows(problem.points.size(), 0);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    rows[candidates[i].point] += active[i] != 0 ? candidates[i].measurement.rows : 0;
+  }
+  Freedom freedom{std::move(active), Mask(problem.poses.size(), 0)};
+  std::vector<int> seen(problem.poses.size(), 0);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    // Two rows for three unknowns: the point is free to run along its ray.
+    if (rows[candidates[i].point] < 3) {
+      freedom.active[i] = 0;
+    }
+    seen[candidates[i].pose] += freedom.active[i];
+    freedom.observations += freedom.active[i];
+  }
+  constexpr int kFewestPoints = 3;
+  bool anchored = false;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    anchored = anchored || (problem.poses[i].fixed && seen[i] > 0);
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (problem.poses[i].fixed || seen[i] < kFewestPoints) {
+      continue;
+    }
+    freedom.free_pose[i] = anchored ? 1 : 0;
+    freedom.free_poses += freedom.free_pose[i];
+    anchored = true;  // if nothing was, the first one is it
+  }
+  return freedom;
+}
+
+/// Ends the solver where the caller asks for it.
+class StopCallback final : public ceres::IterationCallback {
+ public:
+  explicit StopCallback(const std::atomic<bool>* stop) : stop_(stop) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return *stop_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::atomic<bool>* stop_;
+};
+
+/// Losses are shared where weights are equal: most are 1.
+class Losses {
+ public:
+  Losses(const BundleOptions& options, bool robust)
+      : two_(options.huber_two_rows), three_(options.huber_three_rows), robust_(robust) {}
+
+  ceres::LossFunction* of(const Candidate& candidate) {
+    ceres::LossFunction* loss = nullptr;
+    if (robust_) {
+      loss = candidate.measurement.rows == 3 ? &three_ : &two_;
+    }
+    if (candidate.weight == 1.0) {
+      return loss;
+    }
+    scaled_.push_back(std::make_unique<ceres::ScaledLoss>(loss, candidate.weight * candidate.weight,
+                                                          ceres::DO_NOT_TAKE_OWNERSHIP));
+    return scaled_.back().get();
+  }
+
+ private:
+  ceres::HuberLoss two_;
+  ceres::HuberLoss three_;
+  bool robust_;
+  std::vector<std::unique_ptr<ceres::LossFunction>> scaled_;
+};
+
+ceres::Solver::Options solverOptions(const BundleOptions& options, std::size_t free_poses) {
+  ceres::Solver::Options solver;
+  const bool dense = free_poses <= static_cast<std::size_t>(options.max_dense_poses);
+  solver.linear_solver_type = dense ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  solver.logging_type = ceres::SILENT;
+  solver.num_threads = options.threads;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  return solver;
+}
+
+/// One optimisation over the active observations.
+ceres::Solver::Summary solveRound(const std::vector<Candidate>& candidates, const Freedom& freedom,
+                                  const BundleModel& model, const BundleOptions& options,
+                                  bool robust, State& state) {
+  std::deque<BundleCost> costs;  // outlives the problem, as the losses do
+  Losses losses(options, robust);
+  Se3Manifold manifold;
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+#if HMCDYN_SLAM_CERES_HAS_MANIFOLD
+  ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+#else
+  ownership.local_parameterization_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+#endif
+  ceres::Problem problem(ownership);
+  ceres::Solver::Options solver = solverOptions(options, freedom.free_poses);
+  auto* ordering = new ceres::ParameterBlockOrdering;
+  solver.linear_solver_ordering.reset(ordering);
+
+  Mask known_pose(state.poses.size(), 0);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (freedom.active[i] == 0) {
+      continue;
+    }
+    const Candidate& candidate = candidates[i];
+    double* pose = state.poses[candidate.pose].data();
+    double* point = state.points[candidate.point].data();
+    if (known_pose[candidate.pose] == 0) {
+      known_pose[candidate.pose] = 1;
+      problem.AddParameterBlock(pose, kPoseSize, &manifold);
+      ordering->AddElementToGroup(pose, 1);
+      if (freedom.free_pose[candidate.pose] == 0) {
+        problem.SetParameterBlockConstant(pose);
+      }
+    }
+    costs.emplace_back(candidate.measurement, model);
+    problem.AddResidualBlock(&costs.back(), losses.of(candidate), pose, point);
+    ordering->AddElementToGroup(point, 0);
+  }
+  StopCallback callback(options.stop);
+  if (options.stop != nullptr) {
+    solver.callbacks.push_back(&callback);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return summary;
+}
+
+/// Points that were given as NaN do not count: no candidate names them.
+bool allFinite(const State& state, const std::vector<Candidate>& candidates) {
+  return std::all_of(candidates.begin(), candidates.end(), [&state](const Candidate& candidate) {
+    return state.poses[candidate.pose].allFinite() && state.points[candidate.point].allFinite();
+  });
+}
+
+BundleSolution ended(BundleSolution solution, BundleTermination why, const std::string& account) {
+  solution.termination = why;
+  solution.message = std::string(toString(why)) + ": " + account;
+  return solution;
+}
+
+/// Takes over a state, and says which observations agree with it.
+void adopt(BundleSolution& solution, const State& state, const Freedom& freedom,
+           const std::vector<Candidate>& candidates, const Mask& inliers) {
+  for (std::size_t i = 0; i < state.poses.size(); ++i) {
+    if (freedom.free_pose[i] != 0) {  // the others not even by the rounding of a quaternion
+      solution.poses[i] = toIsometry(state.poses[i]);
+    }
+  }
+  solution.points = state.points;
+  solution.used = freedom.observations;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    solution.inlier[candidates[i].index] = inliers[i];
+  }
+  solution.inliers =
+      static_cast<std::size_t>(std::count(inliers.begin(), inliers.end(), std::uint8_t{1}));
+}
+
+bool isStopped(const BundleOptions& options) { return options.stop != nullptr && *options.stop; }
+
+BundleSolution runRounds(const BundleProblem& problem, const std::vector<Candidate>& candidates,
+                         const BundleModel& model, const BundleOptions& options, State state,
+                         BundleSolution solution) {
+  const BundleSolution given = solution;
+  Mask chosen = choose(candidates, state, model, options, false);
+  bool converged = false;
+  std::string account = "no observation can be used";
+  for (int round = 0; round < options.rounds; ++round) {
+    const Freedom freedom = freedomOf(problem, candidates, chosen);
+    if (freedom.observations == 0) {
+      break;
+    }
+    const bool robust = round < options.rounds - options.plain_rounds;
+    const ceres::Solver::Summary summary =
+        solveRound(candidates, freedom, model, options, robust, state);
+    // The first entry is the evaluation at the start.
+    solution.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+    if (!summary.IsSolutionUsable() || !std::isfinite(summary.final_cost) ||
+        !allFinite(state, candidates)) {
+      return ended(given, BundleTermination::kNumericalFailure, summary.message);
+    }
+    if (++solution.rounds == 1) {
+      solution.initial_cost = 2.0 * summary.initial_cost;  // Ceres halves the sum
+    }
+    solution.final_cost = 2.0 * summary.final_cost;
+    converged = summary.termination_type == ceres::CONVERGENCE;
+    account = summary.message;
+    chosen = choose(candidates, state, model, options, true);
+    adopt(solution, state, freedom, candidates, chosen);
+    if (isStopped(options)) {
+      return ended(std::move(solution), BundleTermination::kStopped, account);
+    }
+  }
+  if (solution.rounds == 0) {
+    return ended(std::move(solution), BundleTermination::kNothingToDo, account);
+  }
+  return ended(std::move(solution),
+               converged ? BundleTermination::kConverged : BundleTermination::kIterationLimit,
+               account);
+}
+
+}  // namespace
+
+const char* toString(BundleTermination termination) noexcept {
+  switch (termination) {
+    case BundleTermination::kConverged:
+      return "converged";
+    case BundleTermination::kIterationLimit:
+      return "iteration limit";
+    case BundleTermination::kStopped:
+      return "stopped";
+    case BundleTermination::kNothingToDo:
+      return "nothing to do";
+    case BundleTermination::kNumericalFailure:
+      return "numerical failure";
+  }
+  return "invalid";
+}
+
+BundleSolution adjustBundle(const BundleProblem& problem, const BundleOptions& options) {
+  checkOptions(options);
+  checkProblem(problem);
+  const BundleModel model{problem.camera, options.min_depth};
+
+  BundleSolution solution;
+  State state;
+  for (const BundlePose& pose : problem.poses) {
+    solution.poses.push_back(pose.camera_from_world);
+    state.poses.push_back(toPoseVector(pose.camera_from_world));
+  }
+  solution.points = problem.points;
+  state.points = problem.points;
+  solution.inlier.assign(problem.observations.size(), 0);
+  const std::vector<Candidate> candidates = collect(problem, options, solution.not_finite);
+  if (isStopped(options)) {
+    return ended(std::move(solution), BundleTermination::kStopped, "before the first step");
+  }
+  return runRounds(problem, candidates, model, options, std::move(state), std::move(solution));
+}
+
+}  // namespace hmcdyn::slam
