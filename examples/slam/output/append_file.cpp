@@ -63,12 +63,23 @@ void AppendFile::append(std::string_view text) {
   size_ += static_cast<std::int64_t>(text.size());
 }
 
+void AppendFile::moveTo(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::rename(path_, path, error);
+  if (error) {
+    throw std::runtime_error(path_.string() + ": cannot be renamed to " + path.string() + ": " +
+                             error.message());
+  }
+  path_ = path;
+}
+
 void replaceFile(const std::filesystem::path& path, std::string_view text) {
   std::filesystem::path temporary = path;
   temporary += ".tmp";
   try {
-    AppendFile(temporary).append(text);
-    std::filesystem::rename(temporary, path);
+    AppendFile written(temporary);
+    written.append(text);
+    written.moveTo(path);
   } catch (const std::exception& error) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);

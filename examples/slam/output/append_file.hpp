@@ -25,6 +25,10 @@ class AppendFile {
   /// appended before stays.
   void append(std::string_view text);
 
+  /// Renames the file, in one step and over one that is there; later appends go on in it.
+  /// @throws std::runtime_error naming both files and the reason; the file keeps its name.
+  void moveTo(const std::filesystem::path& path);
+
   const std::filesystem::path& path() const noexcept { return path_; }
 
  private:

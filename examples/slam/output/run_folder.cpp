@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "slam/output/tum_line.hpp"
+
 namespace hmcdyn::slam {
 namespace {
 
@@ -18,6 +20,10 @@ constexpr const char* kTrajectoryFile = "trajectory.txt";
 constexpr const char* kTimingsFile = "timings.csv";
 constexpr const char* kKeyPointsFile = "keypoints.csv";
 constexpr const char* kSummaryFile = "summary.json";
+constexpr const char* kKeyFramesFile = "keyframes.txt";
+constexpr const char* kLoopsFile = "loops.csv";
+constexpr const char* kMapFile = "map.ply";
+constexpr const char* kReportFile = "report.html";
 
 /// Fixed decimals whatever the locale, and NaN without its sign.
 std::string number(double value, int decimals) {
@@ -53,19 +59,7 @@ void checkSizes(const LabelledKeyPoints& frame) {
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file) : file_(file) {}
 
 void TrajectoryWriter::write(double timestamp, const Eigen::Isometry3d& camera_from_world) {
-  if (!std::isfinite(timestamp) || !camera_from_world.matrix().allFinite()) {
-    throw std::invalid_argument(
-        fmt::format("trajectory: stamp {} or its pose is not finite", timestamp));
-  }
-  const Eigen::Isometry3d pose = camera_from_world.inverse();
-  const Eigen::Vector3d t = pose.translation();
-  Eigen::Quaterniond q(pose.linear());
-  q.normalize();
-  if (q.w() < 0.0) {
-    q.coeffs() = -q.coeffs();  // of the two that mean this rotation, always the same
-  }
-  file_.append(fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", timestamp,
-                           t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()));
+  file_.append(tumLine(timestamp, camera_from_world));
 }
 
 TimingsWriter::TimingsWriter(const std::filesystem::path& file, std::vector<std::string> stages)
@@ -123,7 +117,8 @@ RunFolder::RunFolder(std::filesystem::path folder) : folder_(std::move(folder)) 
   if (!std::filesystem::is_directory(folder_)) {
     fail("is no folder");
   }
-  for (const char* name : {kTrajectoryFile, kTimingsFile, kKeyPointsFile, kSummaryFile}) {
+  for (const char* name : {kTrajectoryFile, kTimingsFile, kKeyPointsFile, kSummaryFile,
+                           kKeyFramesFile, kLoopsFile, kMapFile, kReportFile}) {
     std::filesystem::remove(folder_ / name, error);
     if (error) {
       fail(std::string(name) + " of an earlier run cannot be removed: " + error.message());
@@ -148,6 +143,18 @@ TimingsWriter RunFolder::timings(std::vector<std::string> stages) const {
 }
 
 KeyPointsWriter RunFolder::keyPoints() const { return KeyPointsWriter(folder_ / kKeyPointsFile); }
+
+KeyFramesWriter RunFolder::keyFrames() const { return KeyFramesWriter(folder_ / kKeyFramesFile); }
+
+LoopsWriter RunFolder::loops() const { return LoopsWriter(folder_ / kLoopsFile); }
+
+std::size_t RunFolder::writeMap(const PointCloud& cloud) const {
+  return writePly(folder_ / kMapFile, cloud);
+}
+
+void RunFolder::writeReport(const std::string& html) const {
+  replaceFile(folder_ / kReportFile, html);
+}
 
 void RunFolder::writeSummary(const nlohmann::json& summary) const {
   // Paths among the options may hold bytes that are no UTF-8.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <hmcdyn/types.hpp>
 
 #include "slam/output/append_file.hpp"
+#include "slam/output/map_files.hpp"
 #include "slam/output/stage_times.hpp"
 
 namespace hmcdyn::slam {
@@ -73,7 +75,7 @@ class KeyPointsWriter {
 class RunFolder {
  public:
   /// Creates the folder with its parents where it is missing. A folder that exists is used as it
-  /// is: of what it holds, the four files below are removed, so that none is left of an earlier
+  /// is: of what it holds, the files below are removed, so that none is left of an earlier
   /// run; other files stay.
   /// @throws std::runtime_error naming the folder and the reason where it cannot be created or
   /// nothing can be written in it.
@@ -84,6 +86,14 @@ class RunFolder {
   TrajectoryWriter trajectory() const;                           ///< trajectory.txt
   TimingsWriter timings(std::vector<std::string> stages) const;  ///< timings.csv
   KeyPointsWriter keyPoints() const;                             ///< keypoints.csv
+  KeyFramesWriter keyFrames() const;                             ///< keyframes.txt
+  LoopsWriter loops() const;                                     ///< loops.csv
+
+  /// Writes map.ply as writePly() does. @return points written.
+  std::size_t writeMap(const PointCloud& cloud) const;
+
+  /// Writes report.html in one step. @throws std::runtime_error naming the file and the reason.
+  void writeReport(const std::string& html) const;
 
   /// Writes summary.json in one step: it is there complete or not at all. Numbers that are not
   /// finite become null. @throws std::runtime_error naming the file and the reason.

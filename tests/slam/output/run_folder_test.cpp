@@ -79,13 +79,16 @@ TEST_F(RunFolderTest, CreatesTheFolderWithItsParents) {
 
 TEST_F(RunFolderTest, AnEarlierRunsFilesGoAndOthersStay) {
   fs::create_directories(file("out"));
-  for (const char* name :
-       {"trajectory.txt", "timings.csv", "keypoints.csv", "summary.json", "notes.txt"}) {
+  for (const char* name : {"trajectory.txt", "timings.csv", "keypoints.csv", "summary.json",
+                           "keyframes.txt", "loops.csv", "map.ply", "report.html", "notes.txt"}) {
     std::ofstream(file("out") / name) << "old\n";
   }
   const RunFolder run(file("out"));
   EXPECT_FALSE(fs::exists(file("out/summary.json")));
   EXPECT_FALSE(fs::exists(file("out/keypoints.csv")));
+  for (const char* name : {"keyframes.txt", "loops.csv", "map.ply", "report.html"}) {
+    EXPECT_FALSE(fs::exists(file("out") / name)) << name;
+  }
   EXPECT_EQ(contentOf(file("out/notes.txt")), "old\n");
   run.trajectory();
   EXPECT_EQ(contentOf(file("out/trajectory.txt")), "");
