@@ -96,13 +96,13 @@ AppendFile replaceBy(const std::filesystem::path& file, const Fill& fill) {
 
 KeyFramesWriter::KeyFramesWriter(const std::filesystem::path& file) : file_(file) {}
 
-void KeyFramesWriter::write(const StampedKeyFrame& key_frame) {
+void KeyFramesWriter::write(const StampedPose& key_frame) {
   file_.append(tumLine(key_frame.timestamp, key_frame.camera_from_world));
 }
 
-void KeyFramesWriter::rewrite(const std::vector<StampedKeyFrame>& key_frames) {
+void KeyFramesWriter::rewrite(const std::vector<StampedPose>& key_frames) {
   std::string lines;
-  for (const StampedKeyFrame& key_frame : key_frames) {
+  for (const StampedPose& key_frame : key_frames) {
     lines += tumLine(key_frame.timestamp, key_frame.camera_from_world);
   }
   file_ = replaceBy(file_.path(), [&](AppendFile& file) { file.append(lines); });

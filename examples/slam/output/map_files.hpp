@@ -13,17 +13,12 @@
 #include <hmcdyn/span.hpp>
 
 #include "slam/output/append_file.hpp"
+#include "slam/output/tum_line.hpp"
 
 namespace hmcdyn::slam {
 
 // What is known of the map: key frames, loops, points. Each writer throws std::runtime_error,
 // naming the file and the reason, when it cannot write; what the file held before stays.
-
-/// When and where a key frame was taken.
-struct StampedKeyFrame {
-  double timestamp = 0.0;                                               ///< s.
-  Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();  ///< Translation in m.
-};
 
 /// keyframes.txt in TUM format. Grows with each key frame, and is replaced in one step when poses
 /// are corrected: a reader finds the old poses or the new ones, never a mixture.
@@ -32,11 +27,11 @@ class KeyFramesWriter {
   explicit KeyFramesWriter(const std::filesystem::path& file);
 
   /// @throws std::invalid_argument where the stamp or the pose is not finite.
-  void write(const StampedKeyFrame& key_frame);
+  void write(const StampedPose& key_frame);
 
   /// All key frames, in order of time, instead of what the file held. Later ones are appended.
   /// @throws std::invalid_argument as write(); the file stays as it is.
-  void rewrite(const std::vector<StampedKeyFrame>& key_frames);
+  void rewrite(const std::vector<StampedPose>& key_frames);
 
  private:
   AppendFile file_;

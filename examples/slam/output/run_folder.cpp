@@ -17,6 +17,7 @@ namespace hmcdyn::slam {
 namespace {
 
 constexpr const char* kTrajectoryFile = "trajectory.txt";
+constexpr const char* kOnlineTrajectoryFile = "trajectory_online.txt";
 constexpr const char* kTimingsFile = "timings.csv";
 constexpr const char* kKeyPointsFile = "keypoints.csv";
 constexpr const char* kSummaryFile = "summary.json";
@@ -60,6 +61,16 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file) : file_(fi
 
 void TrajectoryWriter::write(double timestamp, const Eigen::Isometry3d& camera_from_world) {
   file_.append(tumLine(timestamp, camera_from_world));
+}
+
+void TrajectoryWriter::finish(const std::vector<StampedPose>& poses) {
+  std::string lines;
+  for (const StampedPose& pose : poses) {
+    lines += tumLine(pose.timestamp, pose.camera_from_world);
+  }
+  std::filesystem::copy_file(file_.path(), file_.path().parent_path() / kOnlineTrajectoryFile,
+                             std::filesystem::copy_options::overwrite_existing);
+  replaceFile(file_.path(), lines);
 }
 
 TimingsWriter::TimingsWriter(const std::filesystem::path& file, std::vector<std::string> stages)
@@ -117,7 +128,7 @@ RunFolder::RunFolder(std::filesystem::path folder) : folder_(std::move(folder)) 
   if (!std::filesystem::is_directory(folder_)) {
     fail("is no folder");
   }
-  for (const char* name : {kTrajectoryFile, kTimingsFile, kKeyPointsFile, kSummaryFile,
+  for (const char* name : {kTrajectoryFile, kOnlineTrajectoryFile, kTimingsFile, kKeyPointsFile, kSummaryFile,
                            kKeyFramesFile, kLoopsFile, kMapFile, kReportFile}) {
     std::filesystem::remove(folder_ / name, error);
     if (error) {

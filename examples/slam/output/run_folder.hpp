@@ -29,6 +29,11 @@ class TrajectoryWriter {
   /// @throws std::invalid_argument where the stamp or the pose is not finite.
   void write(double timestamp, const Eigen::Isometry3d& camera_from_world);
 
+  /// The end of the file's life: all poses, in order of time, take the place of what it held, in
+  /// one step, and that becomes `trajectory_online.txt` beside it. Nothing may be written after.
+  /// @throws std::invalid_argument as write(); the file stays as it is.
+  void finish(const std::vector<StampedPose>& poses);
+
  private:
   AppendFile file_;
 };

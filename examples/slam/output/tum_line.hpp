@@ -7,6 +7,12 @@
 
 namespace hmcdyn::slam {
 
+/// When and where a camera was.
+struct StampedPose {
+  double timestamp = 0.0;                                               ///< s.
+  Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();  ///< Translation in m.
+};
+
 /// A line of a TUM trajectory, with its end: `timestamp tx ty tz qx qy qz qw`, the camera's pose in
 /// the world; microseconds and nanometres.
 /// @param timestamp s. @param camera_from_world translation in m; written is its inverse.

@@ -10,6 +10,7 @@
 #include "slam/detection/detector_options.hpp"
 #include "slam/features/orb_extractor.hpp"
 #include "slam/filtering/motion_filter.hpp"
+#include "slam/mapping/local_mapper.hpp"
 #include "slam/tracking/tracker.hpp"
 
 namespace hmcdyn::slam {
@@ -23,6 +24,7 @@ struct SlamOptions {
   OrbOptions features;
   MotionFilterOptions filter;
   TrackerOptions tracker;
+  LocalMapperOptions mapping;
   std::filesystem::path output;       ///< Folder for the results.
   std::filesystem::path groundtruth;  ///< Empty = groundtruth.txt of the data set, where it is.
   std::uint32_t seed = 1;             ///< Of every random draw.

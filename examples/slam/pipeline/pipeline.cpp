@@ -31,7 +31,8 @@ Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibrat
       detector_(makeDetector(options.detector)),
       extractor_(options.features),
       filter_(options.filter),
-      tracker_(calibration.pinhole, options.tracker) {}
+      tracker_(calibration.pinhole, options.tracker),
+      mapper_(options.mapping) {}
 
 std::vector<DetectionBox> Pipeline::detect(const RgbdFrame& raw, const RgbdFrame& rectified) {
   if (!boxes_are_raw_) {
@@ -60,7 +61,25 @@ FrameOutcome Pipeline::process(const RgbdFrame& raw) {
   outcome.points = frame.points;
   outcome.weight = frame.weight;
   outcome.tracking = times.measure("track", [&] { return tracker_.track(std::move(frame)); });
+  if (outcome.tracking.failure == TrackingFailure::kNone) {
+    log_.add(image.timestamp, outcome.tracking.camera_from_world, outcome.tracking.reference,
+             tracker_.map());
+  }
+  times.measure("map", [&] {
+    if (const std::optional<MapCorrection> correction = mapper_.poll()) {
+      tracker_.apply(*correction);
+    }
+    if (outcome.tracking.new_key_frame) {
+      mapper_.adjust(tracker_.map());
+    }
+  });
   return outcome;
+}
+
+void Pipeline::finish() {
+  if (const std::optional<MapCorrection> correction = mapper_.finish()) {
+    tracker_.apply(*correction);
+  }
 }
 
 }  // namespace hmcdyn::slam

@@ -12,8 +12,10 @@
 #include "slam/detection/detector.hpp"
 #include "slam/features/orb_extractor.hpp"
 #include "slam/filtering/motion_filter.hpp"
+#include "slam/mapping/local_mapper.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
+#include "slam/pipeline/trajectory_log.hpp"
 #include "slam/tracking/tracker.hpp"
 
 namespace hmcdyn::slam {
@@ -38,6 +40,14 @@ class Pipeline {
 
   FrameOutcome process(const RgbdFrame& raw);
 
+  /// Waits for the threads and takes up what they have.
+  void finish();
+
+  /// The poses of all tracked frames, as the map has them now.
+  std::vector<StampedPose> trajectory() const { return log_.poses(tracker_.map()); }
+
+  const Map& map() const noexcept { return tracker_.map(); }
+
   std::string detectorName() const { return detector_->name(); }
 
  private:
@@ -50,6 +60,8 @@ class Pipeline {
   OrbExtractor extractor_;
   MotionFilter filter_;
   Tracker tracker_;
+  LocalMapper mapper_;
+  TrajectoryLog log_;
 };
 
 }  // namespace hmcdyn::slam

@@ -24,7 +24,7 @@ namespace hmcdyn::slam {
 namespace {
 
 /// Stages of Pipeline::process(), the columns of timings.csv.
-const std::vector<std::string> kStages = {"rectify", "detect", "features", "filter", "track"};
+const std::vector<std::string> kStages = {"rectify", "detect", "features", "filter", "track", "map"};
 
 /// The names of COCO's classes, by number.
 std::vector<std::string> classNames() {
@@ -68,6 +68,7 @@ class RunWriter {
     }
   }
 
+  void finishTrajectory(const std::vector<StampedPose>& poses) { trajectory_.finish(poses); }
   void writeSummary(const nlohmann::json& summary) const { folder_.writeSummary(summary); }
 
  private:
@@ -131,6 +132,8 @@ nlohmann::json summarizeRun(const SlamOptions& options, const Pipeline& pipeline
   const std::filesystem::path groundtruth = groundtruthFile(options);
   if (!groundtruth.empty()) {
     summary["evaluation"] = evaluateTrajectory(groundtruth, options.output / "trajectory.txt");
+    summary["evaluation_online"] =
+        evaluateTrajectory(groundtruth, options.output / "trajectory_online.txt");
   }
   return summary;
 }
@@ -177,6 +180,8 @@ nlohmann::json runSlam(SlamOptions options) {
   for (const std::string& warning : filterWarnings(counts, options)) {
     spdlog::warn("{}", warning);
   }
+  pipeline.finish();
+  writer.finishTrajectory(pipeline.trajectory());
   nlohmann::json summary = summarizeRun(options, pipeline, counts, times);
   writer.writeSummary(summary);
   return summary;

@@ -10,7 +10,7 @@
 #include <hmcdyn/types.hpp>
 
 #include "slam/tracking/frame.hpp"
-#include "slam/tracking/map.hpp"
+#include "slam/mapping/map.hpp"
 
 namespace hmcdyn::slam {
 

@@ -149,12 +149,24 @@ TrackingResult Tracker::lose() {
   return result;
 }
 
+void Tracker::apply(const MapCorrection& correction) {
+  if (!last_ || correction.key_frames.empty()) {
+    return;
+  }
+  const int reference = static_cast<int>(map_.keyFrames().size()) - 1;
+  const Eigen::Isometry3d from_reference =
+      last_->camera_from_world * map_.poseOf(reference).inverse();
+  map_.apply(correction);
+  last_->camera_from_world = from_reference * map_.poseOf(reference);
+}
+
 void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search) {
-  std::vector<std::uint8_t> found(map_.points().size(), 0);
+  constexpr int kNotFound = -1;
+  std::vector<int> found(map_.points().size(), kNotFound);  // by key point
   std::vector<std::uint8_t> dynamic(map_.points().size(), 0);
-  for (const int point : frame.map_point) {
-    if (point != kNoMapPoint) {
-      found[static_cast<std::size_t>(point)] = 1;
+  for (std::size_t i = 0; i < frame.map_point.size(); ++i) {
+    if (frame.map_point[i] != kNoMapPoint) {
+      found[static_cast<std::size_t>(frame.map_point[i])] = static_cast<int>(i);
     }
   }
   for (const int point : search.seen_dynamic) {
@@ -162,7 +174,16 @@ void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search)
   }
   for (const int point : search.visible) {
     const auto index = static_cast<std::size_t>(point);
-    map_.count(point, found[index] != 0, dynamic[index] != 0);
+    StaticEvidence evidence;
+    evidence.agrees = found[index] != kNotFound;
+    if (dynamic[index] != 0) {
+      evidence.label = PointLabel::kDynamic;
+    } else if (evidence.agrees) {
+      const auto key_point = static_cast<std::size_t>(found[index]);
+      evidence.label = frame.label[key_point];
+      evidence.weight = frame.weight[key_point];
+    }
+    map_.count(point, evidence.agrees, evidence);
   }
 }
 
@@ -171,7 +192,7 @@ TrackingResult Tracker::track(Frame frame) {
     return initialize(std::move(frame));
   }
   const KeyPointGrid grid(frame);
-  const std::vector<int> candidates = map_.localPoints();
+  const std::vector<int> candidates = map_.pointsOf(map_.localKeyFrames(*last_));
 
   Estimate coarse;
   if (!lost_) {
@@ -216,6 +237,7 @@ TrackingResult Tracker::track(Frame frame) {
     map_.insertKeyFrame(frame);
     result.new_key_frame = true;
   }
+  result.reference = static_cast<int>(map_.keyFrames().size()) - 1;
   last_ = std::move(frame);
   return result;
 }

@@ -11,8 +11,8 @@
 #include <hmcdyn/pose_refinement.hpp>
 #include <hmcdyn/types.hpp>
 
+#include "slam/mapping/map.hpp"
 #include "slam/tracking/frame.hpp"
-#include "slam/tracking/map.hpp"
 #include "slam/tracking/matcher.hpp"
 
 namespace hmcdyn::slam {
@@ -56,6 +56,7 @@ const char* toString(TrackingFailure failure) noexcept;
 struct TrackingResult {
   TrackingFailure failure = TrackingFailure::kNone;
   bool new_key_frame = false;
+  int reference = 0;  ///< Key frame that the pose hangs on: what moves it, moves the pose.
   std::size_t matches = 0;  ///< Map points matched in the last search.
   std::size_t inliers = 0;  ///< Those that agree with the pose.
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
@@ -71,6 +72,9 @@ class Tracker {
   TrackingResult track(Frame frame);
 
   const Map& map() const noexcept { return map_; }
+
+  /// Takes up an optimisation's result: the map moves, and the last frame with it.
+  void apply(const MapCorrection& correction);
 
  private:
   struct Estimate {

@@ -30,8 +30,8 @@ std::string contentOf(const fs::path& path) {
 }
 
 /// A camera at (x, 0, 0) that looks along z.
-StampedKeyFrame keyFrameAt(double timestamp, double x) {
-  StampedKeyFrame key_frame{timestamp, Eigen::Isometry3d::Identity()};
+StampedPose keyFrameAt(double timestamp, double x) {
+  StampedPose key_frame{timestamp, Eigen::Isometry3d::Identity()};
   key_frame.camera_from_world.translation().x() = -x;
   return key_frame;
 }
@@ -69,7 +69,7 @@ TEST(KeyFrames, ACorrectionThatCannotBeWrittenLeavesTheFileInUse) {
   const fs::path file = folder.path() / "keyframes.txt";
   KeyFramesWriter writer(file);
   writer.write(keyFrameAt(1.0, 0.5));
-  StampedKeyFrame broken = keyFrameAt(1.0, 0.5);
+  StampedPose broken = keyFrameAt(1.0, 0.5);
   broken.timestamp = std::numeric_limits<double>::infinity();
   EXPECT_THROW(writer.rewrite({broken}), std::invalid_argument);
   fs::create_directories(folder.path() / "keyframes.txt.tmp" / "in the way");

@@ -147,9 +147,11 @@ TEST(Map, APointThatIsOftenCalledDynamicIsRemoved) {
   Map map(kCamera, {});
   map.insertKeyFrame(room.see(0, movedBy(0.0, 0.0)));
   for (int k = 0; k < 6; ++k) {
-    map.count(0, true, k % 2 == 0);  // half of its sightings
-    map.count(1, true, false);
-    map.count(2, false, false);  // never found again
+    StaticEvidence half;  // half of its sightings
+    half.label = k % 2 == 0 ? PointLabel::kDynamic : PointLabel::kStatic;
+    map.count(0, true, half);
+    map.count(1, true, {});
+    map.count(2, false, {PointLabel::kStatic, 1.0f, false});  // never found again
   }
   map.cull();
   EXPECT_TRUE(map.points()[0].removed);

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/mapping/map.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <utility>
+
+namespace hmcdyn::slam {
+namespace {
+
+Descriptor descriptorOf(const Frame& frame, std::size_t key_point) {
+  Descriptor descriptor;
+  std::memcpy(descriptor.data(),
+              frame.features.descriptors.ptr<std::uint8_t>(static_cast<int>(key_point)),
+              descriptor.size());
+  return descriptor;
+}
+
+Eigen::Vector3d worldPoint(const Frame& frame, std::size_t key_point, const PinholeCamera& camera) {
+  return frame.camera_from_world.inverse() * camera.unproject(frame.points.u[key_point],
+                                                              frame.points.v[key_point],
+                                                              frame.points.depth[key_point]);
+}
+
+/// Static beyond doubt: outside people, or clear of the moving person in depth.
+bool mayEnterMap(const Frame& frame, std::size_t key_point) {
+  constexpr float kClearOfPerson = 0.5f;
+  switch (frame.label[key_point]) {
+    case PointLabel::kStatic:
+      return frame.in_person[key_point] == 0;
+    case PointLabel::kSuspect:
+      return frame.weight[key_point] > kClearOfPerson;
+    case PointLabel::kDynamic:
+    case PointLabel::kUnmatched:
+      break;
+  }
+  return false;
+}
+
+}  // namespace
+
+double Map::depthInformation(double depth) const {
+  const double sigma = options_.depth_noise_floor + options_.depth_noise_quadratic * depth * depth;
+  return 1.0 / (sigma * sigma);
+}
+
+void Map::count(int point, bool found, const StaticEvidence& evidence) {
+  MapPoint& entry = points_[static_cast<std::size_t>(point)];
+  ++entry.visible;
+  entry.found += found ? 1 : 0;
+  entry.belief.update(evidence, options_.belief);
+}
+
+void Map::fuse(const Frame& frame, std::size_t key_point, int point) {
+  MapPoint& entry = points_[static_cast<std::size_t>(point)];
+  const float depth = frame.points.depth[key_point];
+  if (hasDepth(depth) && depth <= options_.max_depth) {
+    const double information = depthInformation(depth);
+    entry.position =
+        (entry.information * entry.position + information * worldPoint(frame, key_point, camera_)) /
+        (entry.information + information);
+    entry.information += information;
+  }
+  entry.descriptor = descriptorOf(frame, key_point);
+  entry.octave = frame.features.key_points[key_point].octave;
+  entry.distance = (frame.camera_from_world * entry.position).norm();
+  entry.last_key_frame = static_cast<int>(key_frames_.size());
+}
+
+int Map::create(const Frame& frame, std::size_t key_point) {
+  MapPoint entry;
+  entry.position = worldPoint(frame, key_point, camera_);
+  entry.information = depthInformation(frame.points.depth[key_point]);
+  entry.descriptor = descriptorOf(frame, key_point);
+  entry.octave = frame.features.key_points[key_point].octave;
+  entry.distance = (frame.camera_from_world * entry.position).norm();
+  entry.first_key_frame = static_cast<int>(key_frames_.size());
+  entry.last_key_frame = entry.first_key_frame;
+  entry.belief.log_odds = options_.belief.prior;
+  points_.push_back(std::move(entry));
+  return static_cast<int>(points_.size()) - 1;
+}
+
+void Map::insertKeyFrame(Frame frame) {
+  const int number = static_cast<int>(key_frames_.size());
+  KeyFrame key_frame;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    int& point = frame.map_point[i];
+    const float depth = frame.points.depth[i];
+    if (point != kNoMapPoint && points_[static_cast<std::size_t>(point)].removed) {
+      point = kNoMapPoint;
+    }
+    if (point != kNoMapPoint) {
+      fuse(frame, i, point);
+    } else if (hasDepth(depth) && depth <= options_.max_depth && mayEnterMap(frame, i)) {
+      point = create(frame, i);
+    }
+    if (point != kNoMapPoint) {
+      points_[static_cast<std::size_t>(point)].observations.push_back({number, i});
+      ++key_frame.map_points;
+    }
+  }
+  key_frame.frame = std::move(frame);
+  key_frames_.push_back(std::move(key_frame));
+}
+
+std::vector<std::pair<int, int>> Map::sharedPoints(const std::vector<int>& map_points,
+                                                   int except) const {
+  std::map<int, int> shared;
+  for (const int point : map_points) {
+    if (point == kNoMapPoint) {
+      continue;
+    }
+    for (const Observation& seen : points_[static_cast<std::size_t>(point)].observations) {
+      ++shared[seen.key_frame];
+    }
+  }
+  shared.erase(except);
+  std::vector<std::pair<int, int>> most_first(shared.begin(), shared.end());
+  std::stable_sort(most_first.begin(), most_first.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  return most_first;
+}
+
+std::vector<std::pair<int, int>> Map::covisible(int key_frame) const {
+  return sharedPoints(key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point, key_frame);
+}
+
+std::vector<int> Map::localKeyFrames(const Frame& frame) const {
+  constexpr int kNone = -1;
+  std::vector<int> local;
+  const auto full = [&] {
+    return local.size() >= static_cast<std::size_t>(options_.local_key_frames);
+  };
+  // The latest few first: what was just seen may not be matched yet.
+  constexpr int kLatest = 4;
+  for (int k = static_cast<int>(key_frames_.size()) - 1;
+       k >= 0 && static_cast<int>(local.size()) < kLatest && !full(); --k) {
+    if (!key_frames_[static_cast<std::size_t>(k)].removed) {
+      local.push_back(k);
+    }
+  }
+  for (const auto& [key_frame, shared] : sharedPoints(frame.map_point, kNone)) {
+    if (full()) {
+      break;
+    }
+    if (std::find(local.begin(), local.end(), key_frame) == local.end()) {
+      local.push_back(key_frame);
+    }
+  }
+  return local;
+}
+
+std::vector<int> Map::pointsOf(const std::vector<int>& key_frames) const {
+  std::vector<int> local;
+  for (const int key_frame : key_frames) {
+    for (const int point : key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point) {
+      if (point != kNoMapPoint && !points_[static_cast<std::size_t>(point)].removed) {
+        local.push_back(point);
+      }
+    }
+  }
+  std::sort(local.begin(), local.end());
+  local.erase(std::unique(local.begin(), local.end()), local.end());
+  return local;
+}
+
+void Map::removePoint(int point) {
+  MapPoint& entry = points_[static_cast<std::size_t>(point)];
+  for (const Observation& seen : entry.observations) {
+    key_frames_[static_cast<std::size_t>(seen.key_frame)].frame.map_point[seen.key_point] =
+        kNoMapPoint;
+  }
+  entry.observations = {};
+  entry.removed = true;
+}
+
+void Map::cullPoints() {
+  constexpr std::size_t kEnoughToJudge = 5;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const MapPoint& point = points_[i];
+    if (point.removed) {
+      continue;
+    }
+    const bool rarely_found =
+        point.visible >= kEnoughToJudge &&
+        static_cast<double>(point.found) <
+            options_.min_found_share * static_cast<double>(point.visible);
+    if (point.observations.empty() || rarely_found ||
+        point.belief.log_odds < options_.belief.removal) {
+      removePoint(static_cast<int>(i));
+    }
+  }
+}
+
+void Map::removeKeyFrame(int key_frame) {
+  KeyFrame& entry = key_frames_[static_cast<std::size_t>(key_frame)];
+  const std::vector<std::pair<int, int>> neighbours = covisible(key_frame);
+  if (neighbours.empty()) {
+    return;
+  }
+  entry.anchor = neighbours.front().first;
+  entry.from_anchor = entry.frame.camera_from_world * poseOf(entry.anchor).inverse();
+  for (const int point : entry.frame.map_point) {
+    if (point == kNoMapPoint) {
+      continue;
+    }
+    std::vector<Observation>& seen = points_[static_cast<std::size_t>(point)].observations;
+    seen.erase(std::remove_if(seen.begin(), seen.end(),
+                              [&](const Observation& o) { return o.key_frame == key_frame; }),
+               seen.end());
+  }
+  Frame bare;
+  bare.index = entry.frame.index;
+  bare.timestamp = entry.frame.timestamp;
+  bare.camera_from_world = entry.frame.camera_from_world;
+  entry.frame = std::move(bare);
+  entry.removed = true;
+}
+
+void Map::cullKeyFrames() {
+  // Neither the first, which holds the world in its place, nor the latest, which are still at work.
+  constexpr int kLatest = 3;
+  for (int k = 1; k + kLatest < static_cast<int>(key_frames_.size()); ++k) {
+    const KeyFrame& entry = key_frames_[static_cast<std::size_t>(k)];
+    if (entry.removed) {
+      continue;
+    }
+    std::size_t points = 0;
+    std::size_t seen_by_others = 0;
+    for (const int point : entry.frame.map_point) {
+      if (point != kNoMapPoint) {
+        ++points;
+        seen_by_others += points_[static_cast<std::size_t>(point)].observations.size() >
+                                  options_.superfluous_observers
+                              ? 1
+                              : 0;
+      }
+    }
+    if (points > 0 && static_cast<double>(seen_by_others) >
+                          options_.superfluous_share * static_cast<double>(points)) {
+      removeKeyFrame(k);
+    }
+  }
+}
+
+void Map::cull() {
+  cullPoints();
+  cullKeyFrames();
+}
+
+Eigen::Isometry3d Map::poseOf(int key_frame) const {
+  Eigen::Isometry3d from_root = Eigen::Isometry3d::Identity();
+  const KeyFrame* entry = &key_frames_[static_cast<std::size_t>(key_frame)];
+  while (entry->removed) {
+    from_root = from_root * entry->from_anchor;
+    entry = &key_frames_[static_cast<std::size_t>(entry->anchor)];
+  }
+  return from_root * entry->frame.camera_from_world;
+}
+
+void Map::apply(const MapCorrection& correction) {
+  if (correction.key_frames.empty()) {
+    return;
+  }
+  const auto latest =
+      std::max_element(correction.key_frames.begin(), correction.key_frames.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
+  // What came after the snapshot moves with the latest key frame in it.
+  const Eigen::Isometry3d old_world_from_new =
+      poseOf(latest->first).inverse() * latest->second;
+  for (int k = latest->first + 1; k < static_cast<int>(key_frames_.size()); ++k) {
+    Frame& frame = key_frames_[static_cast<std::size_t>(k)].frame;
+    frame.camera_from_world = frame.camera_from_world * old_world_from_new;
+  }
+  for (MapPoint& point : points_) {
+    if (!point.removed && point.first_key_frame > latest->first) {
+      point.position = old_world_from_new.inverse() * point.position;
+    }
+  }
+  for (const auto& [key_frame, pose] : correction.key_frames) {
+    key_frames_[static_cast<std::size_t>(key_frame)].frame.camera_from_world = pose;
+  }
+  for (const auto& [point, position] : correction.points) {
+    points_[static_cast<std::size_t>(point)].position = position;
+  }
+  for (const auto& [point, key_frame] : correction.outliers) {
+    MapPoint& entry = points_[static_cast<std::size_t>(point)];
+    const auto seen =
+        std::find_if(entry.observations.begin(), entry.observations.end(),
+                     [key = key_frame](const Observation& o) { return o.key_frame == key; });
+    if (seen != entry.observations.end()) {
+      key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point[seen->key_point] =
+          kNoMapPoint;
+      entry.observations.erase(seen);
+    }
+  }
+}
+
+}  // namespace hmcdyn::slam

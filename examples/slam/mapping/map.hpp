@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+
+#include <hmcdyn/types.hpp>
+
+#include "slam/mapping/static_belief.hpp"
+#include "slam/tracking/frame.hpp"
+
+namespace hmcdyn::slam {
+
+/// An ORB descriptor.
+using Descriptor = std::array<std::uint8_t, 32>;
+
+/// A key frame that saw a map point, and the key point that it saw.
+struct Observation {
+  int key_frame = 0;
+  std::size_t key_point = 0;
+};
+
+/// A point of the world, as far as it is believed to stand still.
+struct MapPoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< World (m).
+  double information = 0.0;  ///< Of its depth measurements so far (1/m^2).
+  Descriptor descriptor{};   ///< Of its latest key frame.
+  int octave = 0;            ///< Pyramid level at which that key frame saw it ...
+  double distance = 0.0;     ///< ... from this distance (m).
+  int first_key_frame = 0;
+  int last_key_frame = 0;  ///< Latest key frame that saw it.
+  std::vector<Observation> observations;
+  std::size_t visible = 0;  ///< Frames in which it should have been seen.
+  std::size_t found = 0;    ///< Frames in which it was matched and agreed.
+  StaticBelief belief;      ///< That it stands still.
+  bool removed = false;
+};
+
+/// A frame that the map remembers. Its number is its place in Map::keyFrames().
+struct KeyFrame {
+  Frame frame;                 ///< Without features once it is removed.
+  std::size_t map_points = 0;  ///< Key points that had a map point when it was inserted.
+  bool removed = false;        ///< Superfluous: others see what it saw.
+  int anchor = -1;             ///< Of a removed one: the key frame that it now hangs on ...
+  Eigen::Isometry3d from_anchor = Eigen::Isometry3d::Identity();  ///< ... and by what.
+};
+
+struct MapOptions {
+  /// Points farther than this (m) are not taken into the map: their depth is too uncertain.
+  double max_depth = 10.0;
+  int local_key_frames = 12;  ///< How many key frames make up the local map.
+  /// A map point is removed when it was found in fewer than this share of the frames that should
+  /// have seen it.
+  double min_found_share = 0.25;
+  StaticBeliefOptions belief;
+  /// A key frame is superfluous when this share of its points has this many other observers.
+  double superfluous_share = 0.9;
+  std::size_t superfluous_observers = 3;
+  /// Depth noise of the sensor, sigma = floor + quadratic z^2 (m); Khoshelham, Elberink 2012.
+  double depth_noise_floor = 0.001;
+  double depth_noise_quadratic = 1.425e-3;
+};
+
+/// New places for key frames and points, from an optimisation over a snapshot of the map.
+struct MapCorrection {
+  std::vector<std::pair<int, Eigen::Isometry3d>> key_frames;  ///< camera_from_world, by number.
+  std::vector<std::pair<int, Eigen::Vector3d>> points;        ///< World (m), by number.
+  std::vector<std::pair<int, int>> outliers;  ///< Observations to drop: point, key frame.
+};
+
+/// The sparse map: key frames and the points that they see.
+class Map {
+ public:
+  Map(PinholeCamera camera, MapOptions options) : camera_(camera), options_(options) {}
+
+  const PinholeCamera& camera() const noexcept { return camera_; }
+  const MapOptions& options() const noexcept { return options_; }
+  const std::vector<MapPoint>& points() const noexcept { return points_; }
+  const std::vector<KeyFrame>& keyFrames() const noexcept { return key_frames_; }
+
+  /// A frame should have seen the point: whether it was found, and what the filter said of it.
+  void count(int point, bool found, const StaticEvidence& evidence);
+
+  /// Makes a key frame: matched points take up its measurement, and static key points with depth
+  /// become new points. A key point in a person's box becomes one only where the filter placed it
+  /// clear of the person (weight above 0.5 in a dynamic box).
+  void insertKeyFrame(Frame frame);
+
+  /// Key frames that share points with a frame, most first, and the latest ones after them: at most
+  /// local_key_frames.
+  std::vector<int> localKeyFrames(const Frame& frame) const;
+
+  /// Points that these key frames see and that were not removed, in the order of their numbers.
+  std::vector<int> pointsOf(const std::vector<int>& key_frames) const;
+
+  /// Key frames that share points with this one, and how many, most first.
+  std::vector<std::pair<int, int>> covisible(int key_frame) const;
+
+  /// Removes points that are rarely found, or no longer believed to stand still, and key frames
+  /// whose points enough others see.
+  void cull();
+
+  /// Takes up an optimisation's result. A key frame that is newer than the snapshot moves with the
+  /// latest one in it, and its points with it.
+  void apply(const MapCorrection& correction);
+
+  /// The pose of a key frame, of a removed one by what it hangs on.
+  Eigen::Isometry3d poseOf(int key_frame) const;
+
+ private:
+  void fuse(const Frame& frame, std::size_t key_point, int point);
+  int create(const Frame& frame, std::size_t key_point);
+  void cullPoints();
+  void cullKeyFrames();
+  void removePoint(int point);
+  void removeKeyFrame(int key_frame);
+  double depthInformation(double depth) const;
+  std::vector<std::pair<int, int>> sharedPoints(const std::vector<int>& map_points,
+                                                int except) const;
+
+  PinholeCamera camera_;
+  MapOptions options_;
+  std::vector<MapPoint> points_;
+  std::vector<KeyFrame> key_frames_;
+};
+
+}  // namespace hmcdyn::slam
