@@ -111,6 +111,26 @@ void checkOptions(const PoseRefinementOptions& options) {
   checkNotNegative("options.parameter_tolerance", options.parameter_tolerance);
 }
 
+}  // namespace
+
+void checkInput(const PoseObservations& observations, const PinholeCamera& camera,
+                const Eigen::Isometry3d& initial, const PoseRefinementOptions& options) {
+  checkSizes(observations, options.depth_row);
+  checkCamera(camera);
+  checkPose(initial);
+  checkOptions(options);
+  for (std::size_t i = 0; i < observations.sigma.size(); ++i) {
+    checkPositive(element("sigma", i), observations.sigma[i]);
+  }
+  for (std::size_t i = 0; i < observations.weight.size(); ++i) {
+    checkNotNegative(element("weight", i), observations.weight[i]);
+  }
+}
+
+ProjectionModel projectionModel(const PinholeCamera& camera, const PoseRefinementOptions& options) {
+  return {camera, options.depth_row, options.baseline_fx, options.min_depth};
+}
+
 bool isFinite(const PoseObservations& observations, std::size_t i) {
   return std::isfinite(observations.x[i]) && std::isfinite(observations.y[i]) &&
          std::isfinite(observations.z[i]) && std::isfinite(observations.u[i]) &&
@@ -139,26 +159,6 @@ PointMeasurement measurementOf(const PoseObservations& observations, std::size_t
     point.inverse_sigma.z() = 1.0 / sigma;
   }
   return point;
-}
-
-}  // namespace
-
-void checkInput(const PoseObservations& observations, const PinholeCamera& camera,
-                const Eigen::Isometry3d& initial, const PoseRefinementOptions& options) {
-  checkSizes(observations, options.depth_row);
-  checkCamera(camera);
-  checkPose(initial);
-  checkOptions(options);
-  for (std::size_t i = 0; i < observations.sigma.size(); ++i) {
-    checkPositive(element("sigma", i), observations.sigma[i]);
-  }
-  for (std::size_t i = 0; i < observations.weight.size(); ++i) {
-    checkNotNegative(element("weight", i), observations.weight[i]);
-  }
-}
-
-ProjectionModel projectionModel(const PinholeCamera& camera, const PoseRefinementOptions& options) {
-  return {camera, options.depth_row, options.baseline_fx, options.min_depth};
 }
 
 CollectedPoints collectPoints(const PoseObservations& observations,

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One linearisation of eq. 10, collapsed: a single pass over the points gives the cost, the 6x6
+// normal equations and every squared residual. Four points at a time, in Eigen's packets, so that
+// the same source serves SSE2, AVX and NEON.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <hmcdyn/pose_refinement.hpp>
+
+#include "pose_refinement_residual.hpp"
+
+namespace hmcdyn::detail {
+
+constexpr std::size_t kLanes = 4;
+using Lanes = Eigen::Array<double, static_cast<int>(kLanes), 1>;
+
+/// Four points, field by field. Unused lanes have weight 0 and stand where every formula is finite.
+struct PointBlock {
+  Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Ones();  ///< Map points (m).
+  Lanes u = Lanes::Zero(), v = Lanes::Zero();  ///< Pixels, measured from the principal point.
+  Lanes information = Lanes::Zero();           ///< 1 / sigma^2 of both pixel rows.
+  Lanes weight = Lanes::Zero();                ///< lambda^2; 0 leaves the point out of the sums.
+  Lanes huber = Lanes::Ones();                 ///< Threshold (sigma); kNoHuber for none.
+  Lanes third = Lanes::Zero();                 ///< Third row: depth (m), or right column like u.
+  Lanes third_information = Lanes::Zero();     ///< 0 where the point has no third row.
+  Lanes inverse_kappa = Lanes::Zero();         ///< 1 / kappa of a suspect in the joint mode, else 0.
+};
+
+/// No residual comes near, and its square is finite.
+constexpr double kNoHuber = 1e150;
+
+/// What varies between linearisations: each combination is a kernel of its own.
+struct CollapseVariant {
+  DepthRow depth_row = DepthRow::kNone;
+  bool huber = false;
+  bool switchable = false;  ///< Some point has an inverse_kappa.
+
+  friend bool operator==(const CollapseVariant& a, const CollapseVariant& b) {
+    return a.depth_row == b.depth_row && a.huber == b.huber && a.switchable == b.switchable;
+  }
+};
+
+/// With f_i = lambda_i^2 rho'(|e_i|^2), J_i = de_i/d(omega, v) as in pointResidual().
+struct CollapsedSystem {
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();      ///< sum f J^T J
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();    ///< sum f J^T e
+  double cost = 0.0;  ///< sum lambda^2 rho(|e|^2); infinite where a point of positive weight is
+                      ///< not in front of the camera, or a sum is not finite.
+};
+
+/// Squared residuals beyond this are those of points that are not in front of the camera.
+constexpr double kBehindCamera = 1e200;
+
+/// Collapses all blocks at a pose. `squared_residuals` gets |e_i|^2 of each point, whatever its
+/// weight, and more than kBehindCamera where it is not in front; it has kLanes entries a block.
+CollapsedSystem collapse(const std::vector<PointBlock>& blocks, const ProjectionModel& model,
+                         CollapseVariant variant, const Eigen::Matrix3d& rotation,
+                         const Eigen::Vector3d& translation,
+                         std::vector<double>& squared_residuals);
+
+}  // namespace hmcdyn::detail

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A collapsed linearisation as a least squares problem of seven residuals.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "pose_refinement_kernel.hpp"
+
+namespace hmcdyn::detail {
+
+/// Seven residuals r and their Jacobian J with J^T J = H, J^T r = g and |r|^2 = cost: to a
+/// Gauss-Newton solver the same problem as the many residuals that were collapsed into H and g.
+struct SquareRootSystem {
+  Eigen::Matrix<double, 7, 1> residuals = Eigen::Matrix<double, 7, 1>::Zero();
+  Eigen::Matrix<double, 7, 6> jacobian = Eigen::Matrix<double, 7, 6>::Zero();
+};
+
+/// The six rows are an upper triangular U with U^T U = H and y with U^T y = g; the seventh is
+/// what of the cost no step can change, sqrt(cost - |y|^2), with a Jacobian of zero.
+/// Where the points leave directions undetermined, H is singular: these get rows of zeros.
+inline SquareRootSystem squareRootOf(const CollapsedSystem& system) {
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  using Matrix6d = Eigen::Matrix<double, 6, 6>;
+  constexpr double kSmallestPivot = 1e-10;  // of a unit diagonal: less is rounding
+  SquareRootSystem root;
+  const Vector6d diagonal = system.normal.diagonal();
+  const Eigen::LLT<Matrix6d, Eigen::Upper> cholesky(system.normal);
+  const bool regular =
+      cholesky.info() == Eigen::Success &&
+      (cholesky.matrixLLT().diagonal().array().square() > kSmallestPivot * diagonal.array()).all();
+  if (regular) {
+    root.jacobian.topRows<6>() = cholesky.matrixU();
+    root.residuals.head<6>() = cholesky.matrixL().solve(system.gradient);
+  } else {
+    const Vector6d scale = diagonal.unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+    const Matrix6d scaled = scale.asDiagonal() * system.normal * scale.asDiagonal();
+    const Eigen::LDLT<Matrix6d> pivoted(scaled);
+    const Vector6d pivots = pivoted.vectorD();
+    const Matrix6d upper = Matrix6d(pivoted.matrixU()) * pivoted.transpositionsP();
+    Vector6d y = pivoted.transpositionsP() * scale.cwiseProduct(system.gradient);
+    pivoted.matrixL().solveInPlace(y);
+    for (int k = 0; k < 6; ++k) {
+      const double size = pivots(k) > kSmallestPivot ? std::sqrt(pivots(k)) : 0.0;
+      root.residuals(k) = size > 0.0 ? y(k) / size : 0.0;
+      root.jacobian.row(k) = size * upper.row(k).cwiseProduct(
+                                        diagonal.transpose().cwiseMax(0.0).cwiseSqrt());
+    }
+  }
+  root.residuals(6) =
+      std::sqrt(std::max(0.0, system.cost - root.residuals.head<6>().squaredNorm()));
+  return root;
+}
+
+}  // namespace hmcdyn::detail
