@@ -7,8 +7,8 @@
 //     applied to the pose of the last linearisation, as Ceres does with a manifold.
 //   - It ignores a cost function that returns false. Infinite residuals make it refuse a step.
 //   - Its function tolerance is absolute (and came with 2.1), its gradient tolerance is one on
-//     the scaled gradient. So the tolerances are tested here, as ceres::Solver tests them, and a
-//     Jacobian of zero, or residuals that no longer change, tell it to stop.
+//     the scaled gradient. So both are tested here, as ceres::Solver tests them. Once one is met,
+//     residuals of zero make it take the step, and a Jacobian of zero makes it stop there.
 //   - max_num_iterations = n ends it after n - 1 steps.
 #pragma once
 
@@ -35,8 +35,6 @@ struct Descent {
   Linearisation* candidate = nullptr;  ///< Where it considers to go.
 
   Eigen::Matrix<double, 6, 1> current_steps = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Matrix<double, 6, 1> candidate_steps = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Matrix<double, 7, 1> residuals = Eigen::Matrix<double, 7, 1>::Zero();  ///< At `current`.
   int iterations = 0;
   const char* stop = nullptr;  ///< The tolerance that was met.
 };
@@ -55,48 +53,50 @@ class DescentFunction {
       r = consider(at);
       return true;
     }
-    arriveAt(at);
-    SquareRootSystem root = squareRootOf(descent_->current->system);
-    // Ceres halves the cost, not its gradient.
-    if (descent_->current->system.gradient.lpNorm<Eigen::Infinity>() <
-        descent_->options->gradient_tolerance) {
-      descent_->stop = "gradient_tolerance";
+    Descent& d = *descent_;
+    if (d.stop == nullptr) {
+      arriveAt(at);
+      if (d.current->system.gradient.lpNorm<Eigen::Infinity>() < d.options->gradient_tolerance) {
+        d.stop = "gradient_tolerance";
+      }
     }
-    if (descent_->stop != nullptr) {
-      root.jacobian.setZero();
-    }
-    descent_->residuals = root.residuals;
+    const SquareRootSystem root = squareRootOf(d.current->system);
     r = root.residuals;
-    Eigen::Map<Eigen::Matrix<double, 7, 6>>{jacobian} = root.jacobian;
+    Eigen::Map<Eigen::Matrix<double, 7, 6>> j(jacobian);
+    j = d.stop == nullptr ? root.jacobian : Eigen::Matrix<double, 7, 6>::Zero();
     return true;
   }
 
-  /// Makes a candidate that was accepted the current linearisation.
+ private:
+  /// TinySolver linearises at its start, and then at each candidate that it has accepted.
   void arriveAt(const Eigen::Matrix<double, 6, 1>& steps) const {
-    if (steps != descent_->current_steps && steps == descent_->candidate_steps) {
-      std::swap(*descent_->current, *descent_->candidate);
-      descent_->current_steps = steps;
+    Descent& d = *descent_;
+    if (steps != d.current_steps) {
+      std::swap(*d.current, *d.candidate);
+      d.current_steps = steps;
     }
   }
 
- private:
   Eigen::Matrix<double, 7, 1> consider(const Eigen::Matrix<double, 6, 1>& steps) const {
     Descent& d = *descent_;
     if (d.stop != nullptr) {
-      return d.residuals;
+      return Eigen::Matrix<double, 7, 1>::Zero();
     }
     const Eigen::Matrix<double, 6, 1> step = steps - d.current_steps;
     PoseManifold().Plus(d.current->pose.data(), step.data(), d.candidate->pose.data());
     d.points->linearise(*d.candidate, d.variant);
-    d.candidate_steps = steps;
     ++d.iterations;
     const double cost = d.current->system.cost;
     const double new_cost = d.candidate->system.cost;
     if (std::abs(cost - new_cost) <= d.options->function_tolerance * cost) {
       d.stop = "function_tolerance";
-      if (new_cost >= cost) {
-        return d.residuals;
+      // At the minimum the last bits decide which cost is lower. The step is taken all the same:
+      // which pose is returned must not depend on them.
+      constexpr double kRounding = 1e-12;
+      if (new_cost <= (1.0 + kRounding) * cost) {
+        arriveAt(steps);
       }
+      return Eigen::Matrix<double, 7, 1>::Zero();
     }
     return std::sqrt(new_cost) * Eigen::Matrix<double, 7, 1>::Unit(6);
   }
@@ -106,29 +106,27 @@ class DescentFunction {
 
 using DescentSolver = ceres::TinySolver<DescentFunction>;
 
-// TinySolver's own function tolerance, where there is one.
+/// Switches TinySolver's own function tolerance off, where there is one.
 template <class Options>
-auto stopAtUnchangedCost(Options& options, int /*preferred*/)
+auto ignoreCostChange(Options& options, int /*preferred*/)
     -> decltype(void(options.function_tolerance)) {
-  options.function_tolerance = std::numeric_limits<double>::min();
+  options.function_tolerance = 0.0;
 }
 template <class Options>
-void stopAtUnchangedCost(Options& /*options*/, long /*otherwise*/) {}
+void ignoreCostChange(Options& /*options*/, long /*otherwise*/) {}
 
-/// Runs TinySolver; the minimum is then descent.current. `steps` starts with the norm of the
-/// pose, which is what a relative step is relative to.
+/// Runs TinySolver; the minimum is then descent.current. A relative step is relative to the sum of
+/// the steps so far, which is stricter than ceres::Solver's, the norm of the pose.
 inline void descend(Descent& descent) {
-  descent.current_steps << 1.0, 0.0, 0.0, descent.current->pose.tail<3>();
-  Eigen::Matrix<double, 6, 1> steps = descent.current_steps;
+  Eigen::Matrix<double, 6, 1> steps = descent.current_steps;  // zero
   const DescentFunction function(descent);
   DescentSolver solver;
   solver.options.max_num_iterations = descent.options->max_iterations + 1;
   solver.options.gradient_tolerance = std::numeric_limits<double>::min();
   solver.options.parameter_tolerance = descent.options->parameter_tolerance;
   solver.options.cost_threshold = 0.0;
-  stopAtUnchangedCost(solver.options, 0);
+  ignoreCostChange(solver.options, 0);
   solver.Solve(function, &steps);
-  function.arriveAt(steps);
   if (descent.stop == nullptr &&
       solver.summary.status == DescentSolver::RELATIVE_STEP_SIZE_TOO_SMALL) {
     descent.stop = "parameter_tolerance";
