@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
@@ -31,6 +32,16 @@ std::optional<Matrix6d> inverseOf(const Matrix6d& information) {
   // To a unit diagonal first: radians and metres have no common scale.
   const Eigen::Matrix<double, 6, 1> scale = diagonal.cwiseSqrt().cwiseInverse();
   const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  // The norms of a matrix and its inverse bound the ratio of its eigenvalues: nearly always that
+  // settles it without them.
+  const Eigen::LLT<Matrix6d> cholesky(scaled);
+  if (cholesky.info() == Eigen::Success) {
+    const Matrix6d inverse = cholesky.solve(Matrix6d::Identity());
+    if (scaled.norm() * inverse.norm() < 1e8) {
+      const Matrix6d symmetric = 0.5 * (inverse + inverse.transpose());
+      return scale.asDiagonal() * symmetric * scale.asDiagonal();
+    }
+  }
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
   constexpr double kSmallestRatio = 1e-12;
   if (eigen.info() != Eigen::Success ||

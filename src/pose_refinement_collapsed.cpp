@@ -2,6 +2,7 @@
 #include "pose_refinement_collapsed.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "pose_refinement_descent.hpp"
@@ -9,9 +10,27 @@
 
 namespace hmcdyn::detail {
 
+namespace {
+
+/// Not finite if one of a point's coordinates is not: 0 * infinity and 0 * NaN are NaN.
+float zeroIfFinite(const PoseObservations& observations, std::size_t i) {
+  return 0.0f * observations.x[i] + 0.0f * observations.y[i] + 0.0f * observations.z[i] +
+         0.0f * observations.u[i] + 0.0f * observations.v[i];
+}
+
+/// Calls fill(block, place in the block, point) for every point.
+template <class Fill>
+void forEachPlace(std::vector<PointBlock>& blocks, std::size_t points, const Fill& fill) {
+  for (std::size_t i = 0; i < points; ++i) {
+    fill(blocks[i / kBlock], i % kBlock, i);
+  }
+}
+
+}  // namespace
+
 void CollapsedPoints::linearise(Linearisation& at, CollapseVariant variant) const {
   const Eigen::Isometry3d pose = toIsometry(at.pose);
-  at.squared_residuals.resize(blocks.size() * kLanes);
+  at.squared_residuals.resize(blocks.size() * kBlock);
   at.system = collapse(blocks, model, variant, pose.linear(), pose.translation(),
                        at.squared_residuals);
 }
@@ -21,59 +40,98 @@ void CollapsedPoseProblem::assign(const PoseObservations& observations,
                                   const PoseRefinementOptions& options) {
   options_ = options;
   points_.model = projectionModel(camera, options);
-  points_.blocks.clear();
-  some_switchable_ = false;
-  not_finite_ = 0;
-  index_.clear();
-  square_weight_.clear();
-  limit_.clear();
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (!isFinite(observations, i)) {
-      ++not_finite_;
-      continue;
-    }
-    const double weight = observations.weight.empty() ? 1.0 : observations.weight[i];
-    if (weight > 0.0) {
-      addPoint(measurementOf(observations, i, options), weight,
-               weight < 1.0 && options.weight_mode == WeightMode::kJoint);
-      index_.push_back(i);
-    }
-  }
-  active_.assign(index_.size(), 1);
   current_is_valid_ = false;
+  choosePoints(observations);
+  active_.assign(index_.size(), 1);
+  fillBlocks(observations);
+  if (options.depth_row != DepthRow::kNone) {
+    fillThirdRow(observations);
+  }
+  some_switchable_ = false;
+  if (options.weight_mode == WeightMode::kJoint) {
+    fillSwitches(observations);
+  }
 }
 
-void CollapsedPoseProblem::addPoint(const PointMeasurement& measurement, double weight,
-                                    bool switchable) {
-  const std::size_t lane = square_weight_.size() % kLanes;
-  if (lane == 0) {
-    points_.blocks.emplace_back();
+void CollapsedPoseProblem::choosePoints(const PoseObservations& observations) {
+  const bool weighted = !observations.weight.empty();
+  index_.resize(observations.size());
+  not_finite_ = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const bool finite = zeroIfFinite(observations, i) == 0.0f;
+    const bool weightless = weighted && observations.weight[i] == 0.0f;
+    index_[count] = static_cast<std::uint32_t>(i);
+    count += static_cast<std::size_t>(finite && !weightless);
+    not_finite_ += static_cast<std::size_t>(!finite);
   }
-  PointBlock& block = points_.blocks.back();
-  const auto k = static_cast<Eigen::Index>(lane);
-  const PinholeCamera& camera = points_.model.camera;
-  const bool third_row = measurement.rows == 3;
-  block.x[k] = measurement.world.x();
-  block.y[k] = measurement.world.y();
-  block.z[k] = measurement.world.z();
-  block.u[k] = measurement.observed.x() - camera.cx;
-  block.v[k] = measurement.observed.y() - camera.cy;
-  block.information[k] = measurement.inverse_sigma.x() * measurement.inverse_sigma.x();
-  block.weight[k] = weight * weight;
-  block.huber[k] = third_row ? options_.huber_three_rows : options_.huber_two_rows;
-  if (third_row) {
-    block.third[k] = options_.depth_row == DepthRow::kDepth
-                         ? measurement.observed.z()
-                         : measurement.observed.z() - camera.cx;
-    block.third_information[k] = measurement.inverse_sigma.z() * measurement.inverse_sigma.z();
+  index_.resize(count);
+}
+
+void CollapsedPoseProblem::fillBlocks(const PoseObservations& observations) {
+  const std::size_t count = index_.size();
+  points_.blocks.resize((count + kBlock - 1) / kBlock);
+  if (count % kBlock != 0) {
+    PointBlock& last = points_.blocks.back();
+    last = PointBlock{};
+    last.z.fill(1.0);
+    last.huber.fill(1.0);
   }
-  if (switchable) {
-    block.huber[k] = kNoHuber;
-    block.inverse_kappa[k] = 1.0 / options_.kappa;
-    some_switchable_ = true;
+  const double cx = points_.model.camera.cx;
+  const double cy = points_.model.camera.cy;
+  forEachPlace(points_.blocks, count, [&](PointBlock& block, std::size_t k, std::size_t j) {
+    const std::size_t i = index_[j];
+    block.x[k] = observations.x[i];
+    block.y[k] = observations.y[i];
+    block.z[k] = observations.z[i];
+    block.u[k] = observations.u[i] - cx;
+    block.v[k] = observations.v[i] - cy;
+    block.information[k] = 1.0;
+    block.weight[k] = 1.0;
+    block.huber[k] = options_.huber_two_rows;
+  });
+  limit_.assign(count, options_.chi2_two_rows);
+  square_weight_.assign(count, 1.0);
+  if (!observations.sigma.empty()) {
+    forEachPlace(points_.blocks, count, [&](PointBlock& block, std::size_t k, std::size_t j) {
+      const double sigma = observations.sigma[index_[j]];
+      block.information[k] = 1.0 / (sigma * sigma);
+    });
   }
-  square_weight_.push_back(weight * weight);
-  limit_.push_back(third_row ? options_.chi2_three_rows : options_.chi2_two_rows);
+  if (!observations.weight.empty()) {
+    forEachPlace(points_.blocks, count, [&](PointBlock& block, std::size_t k, std::size_t j) {
+      const double weight = observations.weight[index_[j]];
+      square_weight_[j] = weight * weight;
+      block.weight[k] = weight * weight;
+    });
+  }
+}
+
+void CollapsedPoseProblem::fillThirdRow(const PoseObservations& observations) {
+  forEachPlace(points_.blocks, index_.size(),
+               [&](PointBlock& block, std::size_t k, std::size_t j) {
+                 const PointMeasurement measurement =
+                     measurementOf(observations, index_[j], options_);
+                 const bool has_row = measurement.rows == 3;
+                 const bool is_column = options_.depth_row == DepthRow::kDisparity;
+                 block.third[k] =
+                     measurement.observed.z() - (is_column ? points_.model.camera.cx : 0.0);
+                 block.third_information[k] =
+                     measurement.inverse_sigma.z() * measurement.inverse_sigma.z();
+                 block.huber[k] = has_row ? options_.huber_three_rows : options_.huber_two_rows;
+                 limit_[j] = has_row ? options_.chi2_three_rows : options_.chi2_two_rows;
+               });
+}
+
+void CollapsedPoseProblem::fillSwitches(const PoseObservations& observations) {
+  forEachPlace(points_.blocks, index_.size(),
+               [&](PointBlock& block, std::size_t k, std::size_t j) {
+                 const bool suspect =
+                     !observations.weight.empty() && observations.weight[index_[j]] < 1.0f;
+                 block.inverse_kappa[k] = suspect ? 1.0 / options_.kappa : 0.0;
+                 block.huber[k] = suspect ? kNoHuber : block.huber[k];
+                 some_switchable_ = some_switchable_ || suspect;
+               });
 }
 
 CollapseVariant CollapsedPoseProblem::variant(bool robust) const {
@@ -82,7 +140,7 @@ CollapseVariant CollapsedPoseProblem::variant(bool robust) const {
 
 void CollapsedPoseProblem::setActive(std::size_t i, bool active) {
   active_[i] = active ? 1 : 0;
-  points_.blocks[i / kLanes].weight[static_cast<Eigen::Index>(i % kLanes)] =
+  points_.blocks[i / kBlock].weight[i % kBlock] =
       active ? square_weight_[i] : 0.0;
 }
 
@@ -163,8 +221,7 @@ void CollapsedPoseProblem::describePoints(PoseRefinementResult& result) const {
     return;
   }
   for (std::size_t i = 0; i < index_.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i % kLanes);
-    const double inverse_kappa = points_.blocks[i / kLanes].inverse_kappa[k];
+    const double inverse_kappa = points_.blocks[i / kBlock].inverse_kappa[i % kBlock];
     if (inverse_kappa > 0.0) {
       const double weight = result.weight[index_[i]];
       result.weight[index_[i]] =

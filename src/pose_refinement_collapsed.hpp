@@ -50,7 +50,11 @@ class CollapsedPoseProblem final : public PoseProblem {
   void describePoints(PoseRefinementResult& result) const override;
 
  private:
-  void addPoint(const PointMeasurement& measurement, double weight, bool switchable);
+  /// Counts the points that are not finite and finds those that may take part.
+  void choosePoints(const PoseObservations& observations);
+  void fillBlocks(const PoseObservations& observations);
+  void fillThirdRow(const PoseObservations& observations);
+  void fillSwitches(const PoseObservations& observations);
   CollapseVariant variant(bool robust) const;
   void setActive(std::size_t i, bool active);
 
@@ -58,7 +62,7 @@ class CollapsedPoseProblem final : public PoseProblem {
   CollapsedPoints points_;
   bool some_switchable_ = false;
   std::size_t not_finite_ = 0;
-  std::vector<std::size_t> index_;     // in the caller's arrays
+  std::vector<std::uint32_t> index_;   // in the caller's arrays
   std::vector<double> square_weight_;  // lambda^2, active or not
   std::vector<double> limit_;          // of the 95 % test
   std::vector<std::uint8_t> active_;

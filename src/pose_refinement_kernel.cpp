@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lanes.hpp"
+
 namespace hmcdyn::detail {
 namespace {
 
@@ -19,24 +21,27 @@ struct Linearised {
 };
 
 /// So many blocks are linearised before they are summed: the sums then stay in registers, and the
-/// linearised blocks in the first-level cache.
-constexpr std::size_t kChunk = 16;
-using Chunk = std::array<Linearised, kChunk>;
+/// linearised points in the first-level cache.
+constexpr std::size_t kChunk = 8;
+using Chunk = std::array<Linearised, kChunk * kBlock / kLanes>;
 
-/// Sums over the points, lane by lane. h34 is zero and h25 = -(h03 + h14).
-struct Sums {
-  Lanes h00, h01, h02, h03, h04, h05, h11, h12, h13, h14, h15;
-  Lanes h22, h23, h24, h33, h35, h44, h45, h55;
-  Lanes g0, g1, g2, g3, g4, g5;
-  Lanes h25_third;
+// Sums over the points, lane by lane: h for the upper triangle of sum f J^T J, g for sum f J^T e.
+// h34 is zero, and h25 = -(h03 + h14) for the pixel rows.
+struct TranslationSums {
+  Lanes h03, h04, h05, h13, h14, h15, h23, h24, h33, h35, h44, h45, h55;
+};
+struct RotationSums {
+  Lanes h00, h01, h02, h11, h12, h22, g0, g1, g2, g3, g4, g5;
+};
+struct CostSums {
   Lanes cost, behind;
 };
-
-Sums zeroSums() {
-  const Lanes zero = Lanes::Zero();
-  return {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero,
-          zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
-}
+struct Sums {
+  TranslationSums t;
+  RotationSums r;
+  CostSums c;
+  Lanes h25_third;
+};
 
 /// A pose and a camera, in scalars that the compiler can keep in registers.
 struct View {
@@ -45,55 +50,65 @@ struct View {
   double fx, fy, baseline_fx, nearest;
 };
 
-/// Residuals, losses and their factors of one block; adds to cost and behind.
+// The helpers below must become part of the loop that calls them, or the sums leave the registers.
+#define HMCDYN_INLINE [[gnu::always_inline]] inline
+
+/// Residuals, losses and their factors of kLanes points of a block; adds to cost and behind.
 template <DepthRow kRow, bool kHuber, bool kSwitch>
-inline void lineariseBlock(const PointBlock& block, const View& view, Linearised& linearised,
-                           double* squared_residuals, Sums& sums) {
+HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const View& view,
+                             Linearised& linearised, double* squared_residuals, CostSums& sums) {
   const Eigen::Matrix3d& r = view.rotation;
   const Eigen::Vector3d& t = view.translation;
-  const Lanes px = r(0, 0) * block.x + r(0, 1) * block.y + r(0, 2) * block.z + t[0];
-  const Lanes py = r(1, 0) * block.x + r(1, 1) * block.y + r(1, 2) * block.z + t[1];
-  const Lanes unbounded = r(2, 0) * block.x + r(2, 1) * block.y + r(2, 2) * block.z + t[2];
-  const Lanes pz = unbounded.max(view.nearest);  // finite formulas behind the camera, too
-  const Lanes missing = pz - unbounded;          // > 0 behind
-  sums.behind += block.weight * missing;
+  const Lanes wx = loadLanes(&block.x[first]);
+  const Lanes wy = loadLanes(&block.y[first]);
+  const Lanes wz = loadLanes(&block.z[first]);
+  const Lanes weight = loadLanes(&block.weight[first]);
+  const Lanes information = loadLanes(&block.information[first]);
+  const Lanes px = r(0, 0) * wx + r(0, 1) * wy + r(0, 2) * wz + t[0];
+  const Lanes py = r(1, 0) * wx + r(1, 1) * wy + r(1, 2) * wz + t[1];
+  const Lanes unbounded = r(2, 0) * wx + r(2, 1) * wy + r(2, 2) * wz + t[2];
+  // Behind the camera the formulas stay finite, too, and `missing` is positive.
+  const Lanes pz = larger(unbounded, Lanes{} + view.nearest);
+  const Lanes missing = pz - unbounded;
+  sums.behind += weight * missing;
 
-  const Lanes inverse_z = pz.inverse();
+  const Lanes inverse_z = 1.0 / pz;
   const Lanes x = px * inverse_z;
   const Lanes y = py * inverse_z;
-  const Lanes du = block.u - view.fx * x;
-  const Lanes dv = block.v - view.fy * y;
-  Lanes s = block.information * (du * du + dv * dv);
-  Lanes third = Lanes::Zero();
+  const Lanes du = loadLanes(&block.u[first]) - view.fx * x;
+  const Lanes dv = loadLanes(&block.v[first]) - view.fy * y;
+  Lanes s = information * (du * du + dv * dv);
+  Lanes third{};
   if constexpr (kRow == DepthRow::kDepth) {
-    third = block.third - pz;
+    third = loadLanes(&block.third[first]) - pz;
   } else if constexpr (kRow == DepthRow::kDisparity) {
-    third = block.third - view.fx * x + view.baseline_fx * inverse_z;
+    third = loadLanes(&block.third[first]) - view.fx * x + view.baseline_fx * inverse_z;
   }
   if constexpr (kRow != DepthRow::kNone) {
-    s += block.third_information * third * third;
+    s += loadLanes(&block.third_information[first]) * third * third;
   }
   constexpr double kLiftAbove = 1e300;  // the smallest `missing` there is becomes > kBehindCamera
-  Eigen::Map<Lanes>{squared_residuals} = s.min(kBehindCamera) + kLiftAbove * missing;
+  storeLanes(smaller(s, Lanes{} + kBehindCamera) + kLiftAbove * missing, squared_residuals);
 
   // Both losses without a branch. Huber: rho = min(s, d^2) + 2 d (q - d), rho' = d / q with
   // q = max(sqrt(s), d). Geman-McClure: rho = share s, rho' = share^2, share = kappa / (kappa + s).
   Lanes rho = s;
-  Lanes factor = block.weight;
+  Lanes factor = weight;
   if constexpr (kHuber) {
-    const Lanes d = block.huber;
-    const Lanes q = s.max(d * d).sqrt();
-    rho = s.min(d * d) + 2.0 * d * (q - d);
+    const Lanes d = loadLanes(&block.huber[first]);
+    const Lanes square = d * d;
+    const Lanes q = squareRoot(larger(s, square));
+    rho = smaller(s, square) + 2.0 * d * (q - d);
     factor *= d / q;
   }
   if constexpr (kSwitch) {
-    const Lanes share = (1.0 + s * block.inverse_kappa).inverse();
+    const Lanes share = 1.0 / (1.0 + s * loadLanes(&block.inverse_kappa[first]));
     rho *= share;
     factor *= share * share;
   }
-  sums.cost += block.weight * rho;
+  sums.cost += weight * rho;
 
-  const Lanes pixel_factor = factor * block.information;
+  const Lanes pixel_factor = factor * information;
   linearised.x = x;
   linearised.y = y;
   linearised.inverse_z = inverse_z;
@@ -102,7 +117,7 @@ inline void lineariseBlock(const PointBlock& block, const View& view, Linearised
   linearised.residual_u = pixel_factor * view.fx * du;
   linearised.residual_v = pixel_factor * view.fy * dv;
   if constexpr (kRow != DepthRow::kNone) {
-    linearised.factor_third = factor * block.third_information;
+    linearised.factor_third = factor * loadLanes(&block.third_information[first]);
     linearised.residual_third = linearised.factor_third * third;
   }
   if constexpr (kRow == DepthRow::kDepth) {
@@ -118,7 +133,7 @@ inline void lineariseBlock(const PointBlock& block, const View& view, Linearised
 //   v: (-(1 + y^2),  x y,      x, 0,   1/z, -y/z)
 // Their weighted products share most of their factors, which the next two functions make use of.
 
-inline void addTranslationPart(const Linearised& a, Sums& sums) {
+HMCDYN_INLINE void addTranslationPart(const Linearised& a, TranslationSums& sums) {
   const Lanes u = a.factor_u * a.inverse_z;
   const Lanes v = a.factor_v * a.inverse_z;
   const Lanes ux = u * a.x;
@@ -139,7 +154,7 @@ inline void addTranslationPart(const Linearised& a, Sums& sums) {
   sums.h15 -= (both + u) * a.x;
 }
 
-inline void addRotationPartAndGradient(const Linearised& a, Sums& sums) {
+HMCDYN_INLINE void addRotationPartAndGradient(const Linearised& a, RotationSums& sums) {
   const Lanes ux = a.factor_u * a.x;
   const Lanes vy = a.factor_v * a.y;
   const Lanes both = ux * a.x + vy * a.y;
@@ -161,22 +176,22 @@ inline void addRotationPartAndGradient(const Linearised& a, Sums& sums) {
 }
 
 /// The row of depth is (p_y, -p_x, 0, 0, 0, 1).
-inline void addDepthRow(const Linearised& a, Sums& sums) {
+HMCDYN_INLINE void addDepthRow(const Linearised& a, Sums& sums) {
   const Lanes mx = a.factor_third * a.third_x;
   const Lanes my = a.factor_third * a.third_y;
-  sums.h00 += my * a.third_y;
-  sums.h01 -= my * a.third_x;
-  sums.h11 += mx * a.third_x;
-  sums.h05 += my;
-  sums.h15 -= mx;
-  sums.h55 += a.factor_third;
-  sums.g0 += a.residual_third * a.third_y;
-  sums.g1 -= a.residual_third * a.third_x;
-  sums.g5 += a.residual_third;
+  sums.r.h00 += my * a.third_y;
+  sums.r.h01 -= my * a.third_x;
+  sums.r.h11 += mx * a.third_x;
+  sums.t.h05 += my;
+  sums.t.h15 -= mx;
+  sums.t.h55 += a.factor_third;
+  sums.r.g0 += a.residual_third * a.third_y;
+  sums.r.g1 -= a.residual_third * a.third_x;
+  sums.r.g5 += a.residual_third;
 }
 
 /// With dh_3/dp = (fx, 0, w) / z the row of disparity is (w y, fx - w x, -fx y, fx/z, 0, w/z).
-inline void addDisparityRow(const Linearised& a, double fx, Sums& sums) {
+HMCDYN_INLINE void addDisparityRow(const Linearised& a, double fx, Sums& sums) {
   const Lanes j0 = a.third_z * a.y;
   const Lanes j1 = fx - a.third_z * a.x;
   const Lanes j2 = -fx * a.y;
@@ -186,63 +201,75 @@ inline void addDisparityRow(const Linearised& a, double fx, Sums& sums) {
   const Lanes m1 = a.factor_third * j1;
   const Lanes m2 = a.factor_third * j2;
   const Lanes m3 = a.factor_third * j3;
-  sums.h00 += m0 * j0;
-  sums.h01 += m0 * j1;
-  sums.h02 += m0 * j2;
-  sums.h03 += m0 * j3;
-  sums.h05 += m0 * j5;
-  sums.h11 += m1 * j1;
-  sums.h12 += m1 * j2;
-  sums.h13 += m1 * j3;
-  sums.h15 += m1 * j5;
-  sums.h22 += m2 * j2;
-  sums.h23 += m2 * j3;
+  sums.r.h00 += m0 * j0;
+  sums.r.h01 += m0 * j1;
+  sums.r.h02 += m0 * j2;
+  sums.t.h03 += m0 * j3;
+  sums.t.h05 += m0 * j5;
+  sums.r.h11 += m1 * j1;
+  sums.r.h12 += m1 * j2;
+  sums.t.h13 += m1 * j3;
+  sums.t.h15 += m1 * j5;
+  sums.r.h22 += m2 * j2;
+  sums.t.h23 += m2 * j3;
   sums.h25_third += m2 * j5 + m0 * j3;  // m0 j3 went into h03, from which h25 is derived
-  sums.h33 += m3 * j3;
-  sums.h35 += m3 * j5;
-  sums.h55 += a.factor_third * j5 * j5;
-  sums.g0 += a.residual_third * j0;
-  sums.g1 += a.residual_third * j1;
-  sums.g2 += a.residual_third * j2;
-  sums.g3 += a.residual_third * j3;
-  sums.g5 += a.residual_third * j5;
+  sums.t.h33 += m3 * j3;
+  sums.t.h35 += m3 * j5;
+  sums.t.h55 += a.factor_third * j5 * j5;
+  sums.r.g0 += a.residual_third * j0;
+  sums.r.g1 += a.residual_third * j1;
+  sums.r.g2 += a.residual_third * j2;
+  sums.r.g3 += a.residual_third * j3;
+  sums.r.g5 += a.residual_third * j5;
 }
 
-CollapsedSystem total(const Sums& s) {
-  CollapsedSystem system;
+CollapsedSystem systemOf(const Sums& sums) {
+  const TranslationSums& t = sums.t;
+  const RotationSums& r = sums.r;
   Eigen::Matrix<double, 6, 6> h;
-  h.row(0) << s.h00.sum(), s.h01.sum(), s.h02.sum(), s.h03.sum(), s.h04.sum(), s.h05.sum();
-  h.row(1) << 0.0, s.h11.sum(), s.h12.sum(), s.h13.sum(), s.h14.sum(), s.h15.sum();
-  h.row(2) << 0.0, 0.0, s.h22.sum(), s.h23.sum(), s.h24.sum(), 0.0;
-  h.row(3) << 0.0, 0.0, 0.0, s.h33.sum(), 0.0, s.h35.sum();
-  h.row(4) << 0.0, 0.0, 0.0, 0.0, s.h44.sum(), s.h45.sum();
-  h.row(5) << 0.0, 0.0, 0.0, 0.0, 0.0, s.h55.sum();
-  h(2, 5) = s.h25_third.sum() - h(0, 3) - h(1, 4);
+  h.row(0) << total(r.h00), total(r.h01), total(r.h02), total(t.h03), total(t.h04), total(t.h05);
+  h.row(1) << 0.0, total(r.h11), total(r.h12), total(t.h13), total(t.h14), total(t.h15);
+  h.row(2) << 0.0, 0.0, total(r.h22), total(t.h23), total(t.h24), 0.0;
+  h.row(3) << 0.0, 0.0, 0.0, total(t.h33), 0.0, total(t.h35);
+  h.row(4) << 0.0, 0.0, 0.0, 0.0, total(t.h44), total(t.h45);
+  h.row(5) << 0.0, 0.0, 0.0, 0.0, 0.0, total(t.h55);
+  h(2, 5) = total(sums.h25_third) - h(0, 3) - h(1, 4);
+  CollapsedSystem system;
   system.normal = h.selfadjointView<Eigen::Upper>();
-  system.gradient << -s.g0.sum(), -s.g1.sum(), -s.g2.sum(), -s.g3.sum(), -s.g4.sum(), -s.g5.sum();
-  const bool feasible = s.behind.sum() == 0.0 && h.allFinite() && system.gradient.allFinite();
-  const double cost = s.cost.sum();
+  system.gradient << -total(r.g0), -total(r.g1), -total(r.g2), -total(r.g3), -total(r.g4), -total(r.g5);
+  const bool feasible =
+      total(sums.c.behind) == 0.0 && system.normal.allFinite() && system.gradient.allFinite();
+  const double cost = total(sums.c.cost);
   system.cost = feasible && std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
   return system;
 }
 
 template <DepthRow kRow, bool kHuber, bool kSwitch>
 CollapsedSystem collapseAll(const std::vector<PointBlock>& blocks, const View& view,
-                            std::vector<double>& squared_residuals) {
+                            double* squared_residuals) {
   Chunk chunk;
-  Sums sums = zeroSums();
+  Sums sums{};
   for (std::size_t begin = 0; begin < blocks.size(); begin += kChunk) {
-    const std::size_t count = std::min(kChunk, blocks.size() - begin);
-    for (std::size_t i = 0; i < count; ++i) {
-      lineariseBlock<kRow, kHuber, kSwitch>(blocks[begin + i], view, chunk[i],
-                                            &squared_residuals[(begin + i) * kLanes], sums);
+    const std::size_t end = std::min(begin + kChunk, blocks.size());
+    std::size_t count = 0;
+    CostSums cost = sums.c;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t first = 0; first < kBlock; first += kLanes) {
+        linearise<kRow, kHuber, kSwitch>(blocks[i], first, view, chunk[count++],
+                                         squared_residuals + i * kBlock + first, cost);
+      }
     }
+    sums.c = cost;
+    TranslationSums translation = sums.t;
     for (std::size_t i = 0; i < count; ++i) {
-      addTranslationPart(chunk[i], sums);
+      addTranslationPart(chunk[i], translation);
     }
+    sums.t = translation;
+    RotationSums rotation = sums.r;
     for (std::size_t i = 0; i < count; ++i) {
-      addRotationPartAndGradient(chunk[i], sums);
+      addRotationPartAndGradient(chunk[i], rotation);
     }
+    sums.r = rotation;
     for (std::size_t i = 0; i < count && kRow != DepthRow::kNone; ++i) {
       if constexpr (kRow == DepthRow::kDepth) {
         addDepthRow(chunk[i], sums);
@@ -251,12 +278,12 @@ CollapsedSystem collapseAll(const std::vector<PointBlock>& blocks, const View& v
       }
     }
   }
-  return total(sums);
+  return systemOf(sums);
 }
 
 template <DepthRow kRow>
 CollapsedSystem collapseRows(const std::vector<PointBlock>& blocks, const View& view,
-                             CollapseVariant variant, std::vector<double>& squared_residuals) {
+                             CollapseVariant variant, double* squared_residuals) {
   if (variant.switchable) {
     return variant.huber ? collapseAll<kRow, true, true>(blocks, view, squared_residuals)
                          : collapseAll<kRow, false, true>(blocks, view, squared_residuals);
@@ -275,13 +302,13 @@ CollapsedSystem collapse(const std::vector<PointBlock>& blocks, const Projection
                   model.camera.fy, model.baseline_fx, model.min_depth};
   switch (variant.depth_row) {
     case DepthRow::kDepth:
-      return collapseRows<DepthRow::kDepth>(blocks, view, variant, squared_residuals);
+      return collapseRows<DepthRow::kDepth>(blocks, view, variant, squared_residuals.data());
     case DepthRow::kDisparity:
-      return collapseRows<DepthRow::kDisparity>(blocks, view, variant, squared_residuals);
+      return collapseRows<DepthRow::kDisparity>(blocks, view, variant, squared_residuals.data());
     case DepthRow::kNone:
       break;
   }
-  return collapseRows<DepthRow::kNone>(blocks, view, variant, squared_residuals);
+  return collapseRows<DepthRow::kNone>(blocks, view, variant, squared_residuals.data());
 }
 
 }  // namespace hmcdyn::detail

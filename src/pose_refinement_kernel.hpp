@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One linearisation of eq. 10, collapsed: a single pass over the points gives the cost, the 6x6
-// normal equations and every squared residual. Four points at a time, in Eigen's packets, so that
-// the same source serves SSE2, AVX and NEON.
+// normal equations and every squared residual.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -16,19 +16,21 @@
 
 namespace hmcdyn::detail {
 
-constexpr std::size_t kLanes = 4;
-using Lanes = Eigen::Array<double, static_cast<int>(kLanes), 1>;
+/// So many points lie together, field by field.
+constexpr std::size_t kBlock = 8;
+using BlockField = std::array<double, kBlock>;
 
-/// Four points, field by field. Unused lanes have weight 0 and stand where every formula is finite.
+/// Fields that the depth row and the joint mode do without are not read. Unused places at the end
+/// have weight 0 and stand where every formula is finite.
 struct PointBlock {
-  Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Ones();  ///< Map points (m).
-  Lanes u = Lanes::Zero(), v = Lanes::Zero();  ///< Pixels, measured from the principal point.
-  Lanes information = Lanes::Zero();           ///< 1 / sigma^2 of both pixel rows.
-  Lanes weight = Lanes::Zero();                ///< lambda^2; 0 leaves the point out of the sums.
-  Lanes huber = Lanes::Ones();                 ///< Threshold (sigma); kNoHuber for none.
-  Lanes third = Lanes::Zero();                 ///< Third row: depth (m), or right column like u.
-  Lanes third_information = Lanes::Zero();     ///< 0 where the point has no third row.
-  Lanes inverse_kappa = Lanes::Zero();         ///< 1 / kappa of a suspect in the joint mode, else 0.
+  BlockField x, y, z;            ///< Map points (m).
+  BlockField u, v;               ///< Pixels, measured from the principal point.
+  BlockField information;        ///< 1 / sigma^2 of both pixel rows.
+  BlockField weight;             ///< lambda^2; 0 leaves the point out of the sums.
+  BlockField huber;              ///< Threshold (sigma); kNoHuber for none.
+  BlockField third;              ///< Third row: depth (m), or right column, measured like u.
+  BlockField third_information;  ///< 0 where the point has no third row.
+  BlockField inverse_kappa;      ///< 1 / kappa of a suspect in the joint mode, else 0.
 };
 
 /// No residual comes near, and its square is finite.
@@ -57,7 +59,7 @@ struct CollapsedSystem {
 constexpr double kBehindCamera = 1e200;
 
 /// Collapses all blocks at a pose. `squared_residuals` gets |e_i|^2 of each point, whatever its
-/// weight, and more than kBehindCamera where it is not in front; it has kLanes entries a block.
+/// weight, and more than kBehindCamera where it is not in front; it has kBlock entries a block.
 CollapsedSystem collapse(const std::vector<PointBlock>& blocks, const ProjectionModel& model,
                          CollapseVariant variant, const Eigen::Matrix3d& rotation,
                          const Eigen::Vector3d& translation,
