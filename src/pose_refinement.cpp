@@ -5,12 +5,12 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
 #include <hmcdyn/pose_refinement.hpp>
 
+#include "cholesky6.hpp"
 #include "pose_refinement_collapsed.hpp"
 #include "pose_refinement_input.hpp"
 #include "pose_refinement_plain.hpp"
@@ -34,9 +34,13 @@ std::optional<Matrix6d> inverseOf(const Matrix6d& information) {
   const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
   // The norms of a matrix and its inverse bound the ratio of its eigenvalues: nearly always that
   // settles it without them.
-  const Eigen::LLT<Matrix6d> cholesky(scaled);
-  if (cholesky.info() == Eigen::Success) {
-    const Matrix6d inverse = cholesky.solve(Matrix6d::Identity());
+  detail::Cholesky6 cholesky;
+  cholesky.compute(scaled);
+  if (cholesky.smallestPivot() > 0.0) {
+    Matrix6d inverse;
+    for (int k = 0; k < 6; ++k) {
+      inverse.col(k) = cholesky.solve(Eigen::Matrix<double, 6, 1>::Unit(k));
+    }
     if (scaled.norm() * inverse.norm() < 1e8) {
       const Matrix6d symmetric = 0.5 * (inverse + inverse.transpose());
       return scale.asDiagonal() * symmetric * scale.asDiagonal();

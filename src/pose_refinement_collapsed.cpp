@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pose_refinement_collapsed.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -18,12 +19,17 @@ float zeroIfFinite(const PoseObservations& observations, std::size_t i) {
          0.0f * observations.u[i] + 0.0f * observations.v[i];
 }
 
-/// Calls fill(block, place in the block, point) for every point.
-template <class Fill>
-void forEachPlace(std::vector<PointBlock>& blocks, std::size_t points, const Fill& fill) {
-  for (std::size_t i = 0; i < points; ++i) {
-    fill(blocks[i / kBlock], i % kBlock, i);
+/// The places at the end that no point takes.
+PointBlock unusedBlock() {
+  PointBlock block;
+  for (BlockField* field : {&block.x, &block.y, &block.u, &block.v, &block.information,
+                            &block.weight, &block.third, &block.third_information,
+                            &block.inverse_kappa}) {
+    field->fill(0.0);
   }
+  block.z.fill(1.0);
+  block.huber.fill(1.0);
+  return block;
 }
 
 }  // namespace
@@ -42,7 +48,7 @@ void CollapsedPoseProblem::assign(const PoseObservations& observations,
   points_.model = projectionModel(camera, options);
   current_is_valid_ = false;
   choosePoints(observations);
-  active_.assign(index_.size(), 1);
+  active_.assign(count_, 1);
   fillBlocks(observations);
   if (options.depth_row != DepthRow::kNone) {
     fillThirdRow(observations);
@@ -55,83 +61,113 @@ void CollapsedPoseProblem::assign(const PoseObservations& observations,
 
 void CollapsedPoseProblem::choosePoints(const PoseObservations& observations) {
   const bool weighted = !observations.weight.empty();
-  index_.resize(observations.size());
-  not_finite_ = 0;
-  std::size_t count = 0;
+  std::uint32_t not_finite = 0;
+  std::uint32_t weightless = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    const bool finite = zeroIfFinite(observations, i) == 0.0f;
-    const bool weightless = weighted && observations.weight[i] == 0.0f;
-    index_[count] = static_cast<std::uint32_t>(i);
-    count += static_cast<std::size_t>(finite && !weightless);
-    not_finite_ += static_cast<std::size_t>(!finite);
+    not_finite += zeroIfFinite(observations, i) == 0.0f ? 0U : 1U;
   }
-  index_.resize(count);
+  for (std::size_t i = 0; i < observations.weight.size(); ++i) {
+    weightless += observations.weight[i] == 0.0f ? 1U : 0U;
+  }
+  not_finite_ = not_finite;
+  index_.clear();
+  count_ = observations.size();
+  if (not_finite + weightless == 0) {
+    return;
+  }
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (zeroIfFinite(observations, i) == 0.0f && !(weighted && observations.weight[i] == 0.0f)) {
+      index_.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  count_ = index_.size();
+}
+
+template <class Value>
+void CollapsedPoseProblem::fill(BlockField PointBlock::*field, const Value& value) {
+  std::size_t j = 0;
+  for (PointBlock& block : points_.blocks) {
+    BlockField& entries = block.*field;
+    if (index_.empty() && j + kBlock <= count_) {
+      for (std::size_t k = 0; k < kBlock; ++k) {
+        entries[k] = value(j + k);
+      }
+    } else {
+      for (std::size_t k = 0; k < kBlock && j + k < count_; ++k) {
+        entries[k] = value(indexOf(j + k));
+      }
+    }
+    j += kBlock;
+  }
 }
 
 void CollapsedPoseProblem::fillBlocks(const PoseObservations& observations) {
-  const std::size_t count = index_.size();
-  points_.blocks.resize((count + kBlock - 1) / kBlock);
-  if (count % kBlock != 0) {
-    PointBlock& last = points_.blocks.back();
-    last = PointBlock{};
-    last.z.fill(1.0);
-    last.huber.fill(1.0);
+  points_.blocks.resize((count_ + kBlock - 1) / kBlock);
+  if (count_ % kBlock != 0) {
+    points_.blocks.back() = unusedBlock();
   }
   const double cx = points_.model.camera.cx;
   const double cy = points_.model.camera.cy;
-  forEachPlace(points_.blocks, count, [&](PointBlock& block, std::size_t k, std::size_t j) {
-    const std::size_t i = index_[j];
-    block.x[k] = observations.x[i];
-    block.y[k] = observations.y[i];
-    block.z[k] = observations.z[i];
-    block.u[k] = observations.u[i] - cx;
-    block.v[k] = observations.v[i] - cy;
-    block.information[k] = 1.0;
-    block.weight[k] = 1.0;
-    block.huber[k] = options_.huber_two_rows;
-  });
-  limit_.assign(count, options_.chi2_two_rows);
-  square_weight_.assign(count, 1.0);
-  if (!observations.sigma.empty()) {
-    forEachPlace(points_.blocks, count, [&](PointBlock& block, std::size_t k, std::size_t j) {
-      const double sigma = observations.sigma[index_[j]];
-      block.information[k] = 1.0 / (sigma * sigma);
+  fill(&PointBlock::x, [&](std::size_t i) -> double { return observations.x[i]; });
+  fill(&PointBlock::y, [&](std::size_t i) -> double { return observations.y[i]; });
+  fill(&PointBlock::z, [&](std::size_t i) -> double { return observations.z[i]; });
+  fill(&PointBlock::u, [&](std::size_t i) { return observations.u[i] - cx; });
+  fill(&PointBlock::v, [&](std::size_t i) { return observations.v[i] - cy; });
+  fill(&PointBlock::huber, [&](std::size_t /*i*/) { return options_.huber_two_rows; });
+  limit_.assign(count_, options_.chi2_two_rows);
+  if (observations.sigma.empty()) {
+    fill(&PointBlock::information, [](std::size_t /*i*/) { return 1.0; });
+  } else {
+    fill(&PointBlock::information, [&](std::size_t i) {
+      const double sigma = observations.sigma[i];
+      return 1.0 / (sigma * sigma);
     });
   }
-  if (!observations.weight.empty()) {
-    forEachPlace(points_.blocks, count, [&](PointBlock& block, std::size_t k, std::size_t j) {
-      const double weight = observations.weight[index_[j]];
-      square_weight_[j] = weight * weight;
-      block.weight[k] = weight * weight;
+  if (observations.weight.empty()) {
+    fill(&PointBlock::weight, [](std::size_t /*i*/) { return 1.0; });
+  } else {
+    fill(&PointBlock::weight, [&](std::size_t i) {
+      const double weight = observations.weight[i];
+      return weight * weight;
     });
+  }
+  square_weight_.resize(points_.blocks.size() * kBlock);
+  for (std::size_t b = 0; b < points_.blocks.size(); ++b) {
+    std::copy(points_.blocks[b].weight.begin(), points_.blocks[b].weight.end(),
+              square_weight_.begin() + static_cast<std::ptrdiff_t>(b * kBlock));
   }
 }
 
 void CollapsedPoseProblem::fillThirdRow(const PoseObservations& observations) {
-  forEachPlace(points_.blocks, index_.size(),
-               [&](PointBlock& block, std::size_t k, std::size_t j) {
-                 const PointMeasurement measurement =
-                     measurementOf(observations, index_[j], options_);
-                 const bool has_row = measurement.rows == 3;
-                 const bool is_column = options_.depth_row == DepthRow::kDisparity;
-                 block.third[k] =
-                     measurement.observed.z() - (is_column ? points_.model.camera.cx : 0.0);
-                 block.third_information[k] =
-                     measurement.inverse_sigma.z() * measurement.inverse_sigma.z();
-                 block.huber[k] = has_row ? options_.huber_three_rows : options_.huber_two_rows;
-                 limit_[j] = has_row ? options_.chi2_three_rows : options_.chi2_two_rows;
-               });
+  const double origin =
+      options_.depth_row == DepthRow::kDisparity ? points_.model.camera.cx : 0.0;
+  const auto has_row = [&](std::size_t i) { return hasDepth(observations.depth[i]); };
+  fill(&PointBlock::third, [&](std::size_t i) {
+    return measurementOf(observations, i, options_).observed.z() - origin;
+  });
+  fill(&PointBlock::third_information, [&](std::size_t i) {
+    const double inverse_sigma = measurementOf(observations, i, options_).inverse_sigma.z();
+    return inverse_sigma * inverse_sigma;
+  });
+  fill(&PointBlock::huber, [&](std::size_t i) {
+    return has_row(i) ? options_.huber_three_rows : options_.huber_two_rows;
+  });
+  for (std::size_t j = 0; j < count_; ++j) {
+    limit_[j] = has_row(indexOf(j)) ? options_.chi2_three_rows : options_.chi2_two_rows;
+  }
 }
 
 void CollapsedPoseProblem::fillSwitches(const PoseObservations& observations) {
-  forEachPlace(points_.blocks, index_.size(),
-               [&](PointBlock& block, std::size_t k, std::size_t j) {
-                 const bool suspect =
-                     !observations.weight.empty() && observations.weight[index_[j]] < 1.0f;
-                 block.inverse_kappa[k] = suspect ? 1.0 / options_.kappa : 0.0;
-                 block.huber[k] = suspect ? kNoHuber : block.huber[k];
-                 some_switchable_ = some_switchable_ || suspect;
-               });
+  for (std::size_t j = 0; j < count_; ++j) {
+    const bool suspect =
+        !observations.weight.empty() && observations.weight[indexOf(j)] < 1.0f;
+    PointBlock& block = points_.blocks[j / kBlock];
+    block.inverse_kappa[j % kBlock] = suspect ? 1.0 / options_.kappa : 0.0;
+    if (suspect) {
+      block.huber[j % kBlock] = kNoHuber;
+      some_switchable_ = true;
+    }
+  }
 }
 
 CollapseVariant CollapsedPoseProblem::variant(bool robust) const {
@@ -150,16 +186,15 @@ std::size_t CollapsedPoseProblem::start(const Eigen::Isometry3d& pose) {
   current_variant_ = variant(options_.plain_rounds < options_.rounds);
   points_.linearise(current_, current_variant_);
   current_is_valid_ = true;
-  std::size_t in_front = 0;
-  for (std::size_t i = 0; i < index_.size(); ++i) {
-    if (current_.squared_residuals[i] <= kBehindCamera) {
-      ++in_front;
-    } else {
-      setActive(i, false);
-      current_is_valid_ = false;
-    }
+  std::size_t behind = 0;
+  for (std::size_t j = 0; j < count_; ++j) {
+    behind += current_.squared_residuals[j] > kBehindCamera ? 1U : 0U;
   }
-  return in_front;
+  for (std::size_t j = 0; j < count_ && behind > 0; ++j) {
+    setActive(j, current_.squared_residuals[j] <= kBehindCamera);
+    current_is_valid_ = false;
+  }
+  return count_ - behind;
 }
 
 SolverOutcome CollapsedPoseProblem::solve(bool robust) {
@@ -192,40 +227,37 @@ SolverOutcome CollapsedPoseProblem::solve(bool robust) {
 }
 
 PoseProblem::InlierTest CollapsedPoseProblem::testInliers() {
-  inlier_.resize(index_.size());
-  InlierTest test;
-  std::size_t differences = 0;
-  for (std::size_t i = 0; i < inlier_.size(); ++i) {
-    inlier_[i] = current_.squared_residuals[i] <= limit_[i] ? 1 : 0;
-    test.inliers += inlier_[i];
-    differences += static_cast<std::size_t>(inlier_[i] ^ active_[i]);
+  inlier_.resize(count_);
+  std::size_t inliers = 0;
+  for (std::size_t j = 0; j < count_; ++j) {
+    const bool inlier = current_.squared_residuals[j] <= limit_[j];
+    inlier_[j] = inlier ? 1 : 0;
+    inliers += inlier ? 1U : 0U;
   }
-  test.are_the_active = differences == 0;
-  return test;
+  return {inliers, inlier_ == active_};
 }
 
 void CollapsedPoseProblem::activateInliers() {
-  for (std::size_t i = 0; i < inlier_.size(); ++i) {
-    if (inlier_[i] != active_[i]) {
-      setActive(i, inlier_[i] != 0);
+  for (std::size_t j = 0; j < count_; ++j) {
+    if (inlier_[j] != active_[j]) {
+      setActive(j, inlier_[j] != 0);
       current_is_valid_ = false;
     }
   }
 }
 
 void CollapsedPoseProblem::describePoints(PoseRefinementResult& result) const {
-  for (std::size_t i = 0; i < inlier_.size(); ++i) {
-    result.inlier[index_[i]] = inlier_[i];
+  if (index_.empty()) {
+    std::copy(inlier_.begin(), inlier_.end(), result.inlier.begin());
   }
-  if (!some_switchable_) {
-    return;
+  for (std::size_t j = 0; j < index_.size(); ++j) {
+    result.inlier[index_[j]] = inlier_[j];
   }
-  for (std::size_t i = 0; i < index_.size(); ++i) {
-    const double inverse_kappa = points_.blocks[i / kBlock].inverse_kappa[i % kBlock];
+  for (std::size_t j = 0; j < count_ && some_switchable_; ++j) {
+    const double inverse_kappa = points_.blocks[j / kBlock].inverse_kappa[j % kBlock];
     if (inverse_kappa > 0.0) {
-      const double weight = result.weight[index_[i]];
-      result.weight[index_[i]] =
-          static_cast<float>(weight / (1.0 + inverse_kappa * current_.squared_residuals[i]));
+      float& weight = result.weight[indexOf(j)];
+      weight = static_cast<float>(weight / (1.0 + inverse_kappa * current_.squared_residuals[j]));
     }
   }
 }

@@ -52,9 +52,13 @@ class CollapsedPoseProblem final : public PoseProblem {
  private:
   /// Counts the points that are not finite and finds those that may take part.
   void choosePoints(const PoseObservations& observations);
+  /// Writes a field of every point: value(i) of the point's index in the caller's arrays.
+  template <class Value>
+  void fill(BlockField PointBlock::*field, const Value& value);
   void fillBlocks(const PoseObservations& observations);
   void fillThirdRow(const PoseObservations& observations);
   void fillSwitches(const PoseObservations& observations);
+  std::size_t indexOf(std::size_t j) const { return index_.empty() ? j : index_[j]; }
   CollapseVariant variant(bool robust) const;
   void setActive(std::size_t i, bool active);
 
@@ -62,7 +66,8 @@ class CollapsedPoseProblem final : public PoseProblem {
   CollapsedPoints points_;
   bool some_switchable_ = false;
   std::size_t not_finite_ = 0;
-  std::vector<std::uint32_t> index_;   // in the caller's arrays
+  std::size_t count_ = 0;              // of the points that may take part
+  std::vector<std::uint32_t> index_;   // in the caller's arrays; empty where all of them take part
   std::vector<double> square_weight_;  // lambda^2, active or not
   std::vector<double> limit_;          // of the 95 % test
   std::vector<std::uint8_t> active_;

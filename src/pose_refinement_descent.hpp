@@ -21,6 +21,7 @@
 
 #include <hmcdyn/pose_refinement.hpp>
 
+#include "cholesky6.hpp"
 #include "pose_refinement_collapsed.hpp"
 #include "pose_refinement_square_root.hpp"
 
@@ -60,10 +61,15 @@ class DescentFunction {
         d.stop = "gradient_tolerance";
       }
     }
+    Eigen::Map<Eigen::Matrix<double, 7, 6>> j(jacobian);
+    if (d.stop != nullptr) {
+      r = std::sqrt(d.current->system.cost) * Eigen::Matrix<double, 7, 1>::Unit(6);
+      j.setZero();
+      return true;
+    }
     const SquareRootSystem root = squareRootOf(d.current->system);
     r = root.residuals;
-    Eigen::Map<Eigen::Matrix<double, 7, 6>> j(jacobian);
-    j = d.stop == nullptr ? root.jacobian : Eigen::Matrix<double, 7, 6>::Zero();
+    j = root.jacobian;
     return true;
   }
 
@@ -104,7 +110,7 @@ class DescentFunction {
   Descent* descent_;
 };
 
-using DescentSolver = ceres::TinySolver<DescentFunction>;
+using DescentSolver = ceres::TinySolver<DescentFunction, Cholesky6>;
 
 /// Switches TinySolver's own function tolerance off, where there is one.
 template <class Options>

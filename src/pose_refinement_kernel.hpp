@@ -20,9 +20,12 @@ namespace hmcdyn::detail {
 constexpr std::size_t kBlock = 8;
 using BlockField = std::array<double, kBlock>;
 
-/// Fields that the depth row and the joint mode do without are not read. Unused places at the end
-/// have weight 0 and stand where every formula is finite.
+/// Fields that a variant does without are not read. Unused places at the end have weight 0 and stand
+/// where every formula is finite.
 struct PointBlock {
+  // Does not write zeros that would be overwritten anyway.
+  PointBlock() {}  // NOLINT(cppcoreguidelines-pro-type-member-init,modernize-use-equals-default)
+
   BlockField x, y, z;            ///< Map points (m).
   BlockField u, v;               ///< Pixels, measured from the principal point.
   BlockField information;        ///< 1 / sigma^2 of both pixel rows.

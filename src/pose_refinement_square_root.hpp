@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "cholesky6.hpp"
 #include "pose_refinement_kernel.hpp"
 
 namespace hmcdyn::detail {
@@ -27,15 +28,13 @@ inline SquareRootSystem squareRootOf(const CollapsedSystem& system) {
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   constexpr double kSmallestPivot = 1e-10;  // of a unit diagonal: less is rounding
   SquareRootSystem root;
-  const Vector6d diagonal = system.normal.diagonal();
-  const Eigen::LLT<Matrix6d, Eigen::Upper> cholesky(system.normal);
-  const bool regular =
-      cholesky.info() == Eigen::Success &&
-      (cholesky.matrixLLT().diagonal().array().square() > kSmallestPivot * diagonal.array()).all();
-  if (regular) {
-    root.jacobian.topRows<6>() = cholesky.matrixU();
-    root.residuals.head<6>() = cholesky.matrixL().solve(system.gradient);
+  Cholesky6 cholesky;
+  cholesky.compute(system.normal);
+  if (cholesky.smallestPivot() > kSmallestPivot) {
+    root.jacobian.topRows<6>().triangularView<Eigen::Upper>() = cholesky.lower().transpose();
+    root.residuals.head<6>() = cholesky.solveLower(system.gradient);
   } else {
+    const Vector6d diagonal = system.normal.diagonal();
     const Vector6d scale = diagonal.unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
     const Matrix6d scaled = scale.asDiagonal() * system.normal * scale.asDiagonal();
     const Eigen::LDLT<Matrix6d> pivoted(scaled);
