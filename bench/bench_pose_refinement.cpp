@@ -4,7 +4,7 @@
 //
 // 256 inputs in rotation: points all over the image, 1 px of noise, 10 % outliers, a third with
 // soft weights. Everyone starts from the same pose and stops within 1e-6 of the lowest cost of its
-// own objective, on every input: at start-up each contender is given the loosest tolerance, in
+// own objective, on every input: at start-up each contender is given the loosest tolerance, in half
 // powers of ten, that achieves this, and the program ends with a message where none does. The
 // objective is eq. 10 with Huber's loss; solvePnPRefineLM knows neither weights nor loss and
 // minimises the plain sum. All of them solve once, so `hmcdyn` runs with rounds = 1;
@@ -39,6 +39,7 @@ using hmcdyn::bench::PoseInput;
 
 constexpr std::size_t kInputs = 256;
 constexpr double kWithin = 1e-6;  // of the lowest cost
+const double kHalfDecade = std::sqrt(0.1);
 
 PoseInput makeInput(std::mt19937& random, std::size_t points) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -85,13 +86,22 @@ std::vector<PoseInput> makeInputs(std::size_t points) {
   return inputs;
 }
 
-Eigen::Isometry3d refineOnce(const PoseInput& input, double tolerance) {
-  PoseRefinementOptions options;
-  options.rounds = 1;
-  options.plain_rounds = 0;
-  options.function_tolerance = tolerance;
-  return refinePose(input.view(), input.camera, input.initial, options).camera_from_world;
-}
+/// With the workspace that a caller keeps who refines every frame.
+class RefineOnce {
+ public:
+  Eigen::Isometry3d operator()(const PoseInput& input, double tolerance) const {
+    PoseRefinementOptions options;
+    options.rounds = 1;
+    options.plain_rounds = 0;
+    options.function_tolerance = tolerance;
+    return refinePose(input.view(), input.camera, input.initial, options, *workspace_)
+        .camera_from_world;
+  }
+
+ private:
+  std::shared_ptr<hmcdyn::PoseRefinementWorkspace> workspace_ =
+      std::make_shared<hmcdyn::PoseRefinementWorkspace>();
+};
 
 /// The cost at a pose of the objective with Huber's loss, or of plain least squares.
 using Cost = std::function<double(const PoseInput&, const Eigen::Isometry3d&)>;
@@ -106,7 +116,7 @@ struct Contender {
 
 std::vector<Contender> contenders() {
   namespace bench = hmcdyn::bench;
-  return {{"hmcdyn", refineOnce, bench::robustCost},
+  return {{"hmcdyn", RefineOnce(), bench::robustCost},
           {"ceres_full", bench::solveWithCeres, bench::robustCost},
           {"ceres_autodiff", bench::solveWithCeresAutoDiff, bench::robustCost},
           {"tiny_solver", bench::TinySolverOverAllResiduals(), bench::robustCost},
@@ -117,7 +127,7 @@ std::vector<Contender> contenders() {
 /// program where there is none.
 double looseTolerance(const Contender& contender, const std::vector<PoseInput>& inputs,
                       const std::vector<double>& lowest) {
-  for (double tolerance = 1e-3; tolerance > 1e-13; tolerance *= 0.1) {
+  for (double tolerance = 1e-3; tolerance > 1e-13; tolerance *= kHalfDecade) {
     bool all = true;
     for (std::size_t k = 0; k < inputs.size() && all; ++k) {
       const double cost = contender.cost(inputs[k], contender.solve(inputs[k], tolerance));

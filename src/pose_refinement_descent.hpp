@@ -54,22 +54,22 @@ class DescentFunction {
       r = consider(at);
       return true;
     }
+    Eigen::Map<Eigen::Matrix<double, 7, 6>> j(jacobian);
     Descent& d = *descent_;
     if (d.stop == nullptr) {
       arriveAt(at);
-      if (d.current->system.gradient.lpNorm<Eigen::Infinity>() < d.options->gradient_tolerance) {
+      const CollapsedSystem& system = d.current->system;
+      r = squareRootOf(system, j);
+      if (system.gradient.lpNorm<Eigen::Infinity>() < d.options->gradient_tolerance) {
         d.stop = "gradient_tolerance";
+      } else if (r.head<6>().squaredNorm() <= d.options->function_tolerance * system.cost) {
+        d.stop = "function_tolerance";  // it is all that a step can gain
       }
     }
-    Eigen::Map<Eigen::Matrix<double, 7, 6>> j(jacobian);
     if (d.stop != nullptr) {
       r = std::sqrt(d.current->system.cost) * Eigen::Matrix<double, 7, 1>::Unit(6);
       j.setZero();
-      return true;
     }
-    const SquareRootSystem root = squareRootOf(d.current->system);
-    r = root.residuals;
-    j = root.jacobian;
     return true;
   }
 

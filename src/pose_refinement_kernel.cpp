@@ -237,8 +237,9 @@ CollapsedSystem systemOf(const Sums& sums) {
   CollapsedSystem system;
   system.normal = h.selfadjointView<Eigen::Upper>();
   system.gradient << -total(r.g0), -total(r.g1), -total(r.g2), -total(r.g3), -total(r.g4), -total(r.g5);
-  const bool feasible =
-      total(sums.c.behind) == 0.0 && system.normal.allFinite() && system.gradient.allFinite();
+  // The diagonal bounds the other entries.
+  const bool feasible = total(sums.c.behind) == 0.0 && system.normal.diagonal().allFinite() &&
+                        system.gradient.allFinite();
   const double cost = total(sums.c.cost);
   system.cost = feasible && std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
   return system;

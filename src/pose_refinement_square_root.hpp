@@ -13,26 +13,25 @@
 
 namespace hmcdyn::detail {
 
-/// Seven residuals r and their Jacobian J with J^T J = H, J^T r = g and |r|^2 = cost: to a
-/// Gauss-Newton solver the same problem as the many residuals that were collapsed into H and g.
-struct SquareRootSystem {
-  Eigen::Matrix<double, 7, 1> residuals = Eigen::Matrix<double, 7, 1>::Zero();
-  Eigen::Matrix<double, 7, 6> jacobian = Eigen::Matrix<double, 7, 6>::Zero();
-};
-
+/// A collapsed system as seven residuals r, returned, and their Jacobian J, with J^T J = H,
+/// J^T r = g and |r|^2 = cost: to a Gauss-Newton solver the same problem as the many residuals that
+/// were collapsed into H and g.
+///
 /// The six rows are an upper triangular U with U^T U = H and y with U^T y = g; the seventh is
 /// what of the cost no step can change, sqrt(cost - |y|^2), with a Jacobian of zero.
 /// Where the points leave directions undetermined, H is singular: these get rows of zeros.
-inline SquareRootSystem squareRootOf(const CollapsedSystem& system) {
+inline Eigen::Matrix<double, 7, 1> squareRootOf(const CollapsedSystem& system,
+                                                Eigen::Ref<Eigen::Matrix<double, 7, 6>> jacobian) {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   constexpr double kSmallestPivot = 1e-10;  // of a unit diagonal: less is rounding
-  SquareRootSystem root;
+  Eigen::Matrix<double, 7, 1> residuals;
+  jacobian.setZero();
   Cholesky6 cholesky;
   cholesky.compute(system.normal);
   if (cholesky.smallestPivot() > kSmallestPivot) {
-    root.jacobian.topRows<6>().triangularView<Eigen::Upper>() = cholesky.lower().transpose();
-    root.residuals.head<6>() = cholesky.solveLower(system.gradient);
+    jacobian.topRows<6>().triangularView<Eigen::Upper>() = cholesky.lower().transpose();
+    residuals.head<6>() = cholesky.solveLower(system.gradient);
   } else {
     const Vector6d diagonal = system.normal.diagonal();
     const Vector6d scale = diagonal.unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
@@ -44,14 +43,14 @@ inline SquareRootSystem squareRootOf(const CollapsedSystem& system) {
     pivoted.matrixL().solveInPlace(y);
     for (int k = 0; k < 6; ++k) {
       const double size = pivots(k) > kSmallestPivot ? std::sqrt(pivots(k)) : 0.0;
-      root.residuals(k) = size > 0.0 ? y(k) / size : 0.0;
-      root.jacobian.row(k) = size * upper.row(k).cwiseProduct(
+      residuals(k) = size > 0.0 ? y(k) / size : 0.0;
+      jacobian.row(k) = size * upper.row(k).cwiseProduct(
                                         diagonal.transpose().cwiseMax(0.0).cwiseSqrt());
     }
   }
-  root.residuals(6) =
-      std::sqrt(std::max(0.0, system.cost - root.residuals.head<6>().squaredNorm()));
-  return root;
+  residuals(6) =
+      std::sqrt(std::max(0.0, system.cost - residuals.head<6>().squaredNorm()));
+  return residuals;
 }
 
 }  // namespace hmcdyn::detail
