@@ -36,8 +36,12 @@ target_link_libraries(
   PRIVATE opencv_imgproc opencv_video opencv_calib3d hmcdyn_warnings)
 add_library(hmcdyn::vision ALIAS hmcdyn_vision)
 
-add_library(hmcdyn_optimization src/pose_refinement.cpp src/pose_refinement_input.cpp
-                                src/pose_refinement_solver.cpp)
+add_library(
+  hmcdyn_optimization
+  src/pose_refinement.cpp src/pose_refinement_collapsed.cpp src/pose_refinement_input.cpp
+  src/pose_refinement_kernel.cpp src/pose_refinement_plain.cpp src/pose_refinement_solver.cpp)
+# The square root as one instruction: errno is not read. Sums keep the order that is written.
+set_source_files_properties(src/pose_refinement_kernel.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
 target_link_libraries(hmcdyn_optimization PUBLIC hmcdyn::core
                                           PRIVATE ${CERES_LIBRARIES} hmcdyn_warnings)
 add_library(hmcdyn::optimization ALIAS hmcdyn_optimization)

@@ -1,80 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
 #include <hmcdyn/pose_refinement.hpp>
 
+#include "cholesky6.hpp"
+#include "pose_refinement_collapsed.hpp"
 #include "pose_refinement_input.hpp"
-#include "pose_refinement_residual.hpp"
-#include "pose_refinement_solver.hpp"
+#include "pose_refinement_plain.hpp"
+#include "pose_refinement_problem.hpp"
 
 namespace hmcdyn {
 namespace {
 
-using detail::ProjectionModel;
-using detail::WeightedPoint;
 using Termination = PoseRefinementTermination;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Mask = std::vector<std::uint8_t>;  // one entry a WeightedPoint
 
 constexpr std::size_t kFewestPoints = 3;
-
-std::size_t count(const Mask& mask) {
-  return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), std::uint8_t{1}));
-}
-
-Mask inFront(const std::vector<WeightedPoint>& points, const ProjectionModel& model,
-             const Eigen::Isometry3d& pose) {
-  Mask mask;
-  mask.reserve(points.size());
-  for (const WeightedPoint& point : points) {
-    mask.push_back(
-        detail::pointResidual(point.measurement, model, pose.linear(), pose.translation()) ? 1 : 0);
-  }
-  return mask;
-}
-
-/// The 95 % test on the unweighted residual.
-Mask inliersAt(const std::vector<WeightedPoint>& points, const ProjectionModel& model,
-               const Eigen::Isometry3d& pose, const PoseRefinementOptions& options) {
-  Mask mask;
-  mask.reserve(points.size());
-  for (const WeightedPoint& point : points) {
-    const auto at_pose =
-        detail::pointResidual(point.measurement, model, pose.linear(), pose.translation());
-    const double limit =
-        point.measurement.rows == 3 ? options.chi2_three_rows : options.chi2_two_rows;
-    mask.push_back(at_pose && at_pose->residual.squaredNorm() <= limit ? 1 : 0);
-  }
-  return mask;
-}
-
-/// Gauss-Newton information of the last round at its optimum.
-Matrix6d informationAt(const std::vector<WeightedPoint>& points, const Mask& active,
-                       const ProjectionModel& model, const Eigen::Isometry3d& pose,
-                       const PoseRefinementOptions& options, bool robust) {
-  Matrix6d information = Matrix6d::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto at_pose = active[i] != 0 ? detail::pointResidual(points[i].measurement, model,
-                                                                pose.linear(), pose.translation())
-                                        : std::nullopt;
-    if (at_pose) {
-      std::array<double, 3> rho{};
-      detail::makeLoss(points[i], options, robust)
-          ->Evaluate(at_pose->residual.squaredNorm(), rho.data());
-      information += rho[1] * at_pose->jacobian.transpose() * at_pose->jacobian;
-    }
-  }
-  return information;
-}
 
 std::optional<Matrix6d> inverseOf(const Matrix6d& information) {
   const Eigen::Matrix<double, 6, 1> diagonal = information.diagonal();
@@ -84,6 +32,20 @@ std::optional<Matrix6d> inverseOf(const Matrix6d& information) {
   // To a unit diagonal first: radians and metres have no common scale.
   const Eigen::Matrix<double, 6, 1> scale = diagonal.cwiseSqrt().cwiseInverse();
   const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  // The norms of a matrix and its inverse bound the ratio of its eigenvalues: nearly always that
+  // settles it without them.
+  detail::Cholesky6 cholesky;
+  cholesky.compute(scaled);
+  if (cholesky.smallestPivot() > 0.0) {
+    Matrix6d inverse;
+    for (int k = 0; k < 6; ++k) {
+      inverse.col(k) = cholesky.solve(Eigen::Matrix<double, 6, 1>::Unit(k));
+    }
+    if (scaled.norm() * inverse.norm() < 1e8) {
+      const Matrix6d symmetric = 0.5 * (inverse + inverse.transpose());
+      return scale.asDiagonal() * symmetric * scale.asDiagonal();
+    }
+  }
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
   constexpr double kSmallestRatio = 1e-12;
   if (eigen.info() != Eigen::Success ||
@@ -93,25 +55,6 @@ std::optional<Matrix6d> inverseOf(const Matrix6d& information) {
   const Matrix6d inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                            eigen.eigenvectors().transpose();
   return scale.asDiagonal() * inverse * scale.asDiagonal();
-}
-
-/// The weights given, with lambda0 kappa / (kappa + |e|^2) for each switchable point: where eq. 10
-/// with the prior has its minimum over lambda.
-std::vector<float> refinedWeights(std::vector<float> weights,
-                                  const std::vector<WeightedPoint>& points,
-                                  const ProjectionModel& model, const Eigen::Isometry3d& pose,
-                                  double kappa) {
-  for (const WeightedPoint& point : points) {
-    if (point.switchable) {
-      const auto at_pose =
-          detail::pointResidual(point.measurement, model, pose.linear(), pose.translation());
-      weights[point.index] =
-          at_pose
-              ? static_cast<float>(point.weight * kappa / (kappa + at_pose->residual.squaredNorm()))
-              : 0.0f;
-    }
-  }
-  return weights;
 }
 
 /// The round to run next. Where nothing changed, the rounds up to the next loss would not either.
@@ -131,15 +74,20 @@ PoseRefinementResult stopped(PoseRefinementResult result, Termination why,
 }
 
 /// Runs the rounds from result.camera_from_world and completes the result.
-PoseRefinementResult runRounds(const std::vector<WeightedPoint>& points, Mask active,
-                               const ProjectionModel& model, const PoseRefinementOptions& options,
+PoseRefinementResult runRounds(detail::PoseProblem& problem, const PoseRefinementOptions& options,
                                PoseRefinementResult result) {
-  Eigen::Isometry3d pose = result.camera_from_world;
+  result.usable_points = problem.start(result.camera_from_world);
+  result.skipped_points = problem.notFinite();
+  if (result.usable_points < kFewestPoints) {
+    const std::string account =
+        std::to_string(result.usable_points) +
+        " points are finite, in front of the camera and of positive weight; a pose takes 3";
+    return stopped(std::move(result), Termination::kTooFewPoints, account);
+  }
   int round = 0;
   while (true) {
-    const bool robust = round < options.rounds - options.plain_rounds;
     const detail::SolverOutcome outcome =
-        detail::solvePose(points, active, model, options, robust, pose);
+        problem.solve(round < options.rounds - options.plain_rounds);
     ++result.rounds;
     result.iterations += outcome.iterations;
     if (!outcome.usable) {
@@ -148,29 +96,25 @@ PoseRefinementResult runRounds(const std::vector<WeightedPoint>& points, Mask ac
     if (result.rounds == 1) {
       result.initial_cost = outcome.initial_cost;
     }
-    pose = outcome.pose;
-    Mask inliers = inliersAt(points, model, pose, options);
-    if (count(inliers) < kFewestPoints) {
-      const std::string account = std::to_string(count(inliers)) +
+    const auto test = problem.testInliers();
+    if (test.inliers < kFewestPoints) {
+      const std::string account = std::to_string(test.inliers) +
                                   " points agree with the pose of round " +
                                   std::to_string(result.rounds) + "; a pose takes 3";
       return stopped(std::move(result), Termination::kTooFewInliers, account);
     }
-    round = nextRound(round, outcome.converged && inliers == active, options);
+    round = nextRound(round, outcome.converged && test.are_the_active, options);
     if (round >= options.rounds) {
-      result.camera_from_world = pose;
-      result.covariance = inverseOf(informationAt(points, active, model, pose, options, robust));
+      result.camera_from_world = problem.pose();
+      result.covariance = inverseOf(problem.information());
       result.final_cost = outcome.final_cost;
-      result.inliers = count(inliers);
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        result.inlier[points[i].index] = inliers[i];
-      }
-      result.weight = refinedWeights(std::move(result.weight), points, model, pose, options.kappa);
+      result.inliers = test.inliers;
+      problem.describePoints(result);
       return stopped(std::move(result),
                      outcome.converged ? Termination::kConverged : Termination::kIterationLimit,
                      outcome.message);
     }
-    active = std::move(inliers);
+    problem.activateInliers();
   }
 }
 
@@ -192,29 +136,39 @@ const char* toString(PoseRefinementTermination termination) noexcept {
   return "invalid";
 }
 
+PoseRefinementWorkspace::PoseRefinementWorkspace()
+    : problem_(std::make_unique<detail::CollapsedPoseProblem>()) {}
+PoseRefinementWorkspace::~PoseRefinementWorkspace() = default;
+PoseRefinementWorkspace::PoseRefinementWorkspace(PoseRefinementWorkspace&&) noexcept = default;
+PoseRefinementWorkspace& PoseRefinementWorkspace::operator=(PoseRefinementWorkspace&&) noexcept =
+    default;
+
 PoseRefinementResult refinePose(const PoseObservations& observations, const PinholeCamera& camera,
                                 const Eigen::Isometry3d& initial,
-                                const PoseRefinementOptions& options) {
+                                const PoseRefinementOptions& options,
+                                PoseRefinementWorkspace& workspace) {
   detail::checkInput(observations, camera, initial, options);
-  const ProjectionModel model = detail::projectionModel(camera, options);
-  const auto [points, not_finite] = detail::collectPoints(observations, options);
-
   PoseRefinementResult result;
   result.camera_from_world = initial;
   result.inlier.assign(observations.size(), 0);
   result.weight.assign(observations.weight.begin(), observations.weight.end());
   result.weight.resize(observations.size(), 1.0f);
-  result.skipped_points = not_finite;
-
-  Mask active = inFront(points, model, initial);
-  result.usable_points = count(active);
-  if (result.usable_points < kFewestPoints) {
-    const std::string account =
-        std::to_string(result.usable_points) +
-        " points are finite, in front of the camera and of positive weight; a pose takes 3";
-    return stopped(std::move(result), Termination::kTooFewPoints, account);
+  if (options.solver == PoseSolver::kCeresProblem) {
+    detail::PlainPoseProblem problem(observations, camera, options);
+    return runRounds(problem, options, std::move(result));
   }
-  return runRounds(points, std::move(active), model, options, std::move(result));
+  if (workspace.problem_ == nullptr) {  // moved from
+    workspace.problem_ = std::make_unique<detail::CollapsedPoseProblem>();
+  }
+  workspace.problem_->assign(observations, camera, options);
+  return runRounds(*workspace.problem_, options, std::move(result));
+}
+
+PoseRefinementResult refinePose(const PoseObservations& observations, const PinholeCamera& camera,
+                                const Eigen::Isometry3d& initial,
+                                const PoseRefinementOptions& options) {
+  PoseRefinementWorkspace workspace;
+  return refinePose(observations, camera, initial, options, workspace);
 }
 
 }  // namespace hmcdyn

@@ -2,11 +2,14 @@
 #include "pose_refinement_input.hpp"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 namespace hmcdyn::detail {
 namespace {
+
+// Names arrive as literals: a check that passes builds no string.
 
 [[noreturn]] void refuse(const std::string& argument, const std::string& value,
                          const std::string& expected) {
@@ -14,29 +17,40 @@ namespace {
 }
 
 /// Also refuses a NaN and an infinity.
-void checkRange(const std::string& argument, double value, bool in_range,
-                const std::string& expected) {
+void checkRange(const char* argument, double value, bool in_range, const char* expected) {
   if (!std::isfinite(value) || !in_range) {
     refuse(argument, std::to_string(value), expected);
   }
 }
 
-void checkPositive(const std::string& argument, double value) {
+void checkPositive(const char* argument, double value) {
   checkRange(argument, value, value > 0.0, "finite and > 0");
 }
 
-void checkNotNegative(const std::string& argument, double value) {
+void checkNotNegative(const char* argument, double value) {
   checkRange(argument, value, value >= 0.0, "finite and >= 0");
 }
 
-void checkCount(const std::string& argument, int value, int least) {
+void checkCount(const char* argument, int value, int least) {
   if (value < least) {
     refuse(argument, std::to_string(value), "at least " + std::to_string(least));
   }
 }
 
-std::string element(const char* array, std::size_t i) {
-  return std::string("observations.") + array + "[" + std::to_string(i) + "]";
+/// Checks every element; `in_range` must be false for a NaN.
+template <class InRange>
+void checkElements(const char* array, Span<const float> values, const InRange& in_range,
+                   const char* expected) {
+  unsigned refused = 0;  // counted first: that the compiler can vectorise
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    refused += in_range(values[i]) ? 0U : 1U;
+  }
+  for (std::size_t i = 0; i < values.size() && refused > 0; ++i) {
+    if (!in_range(values[i])) {
+      refuse(std::string("observations.") + array + "[" + std::to_string(i) + "]",
+             std::to_string(values[i]), expected);
+    }
+  }
 }
 
 void checkSizes(const PoseObservations& observations, DepthRow depth_row) {
@@ -111,6 +125,27 @@ void checkOptions(const PoseRefinementOptions& options) {
   checkNotNegative("options.parameter_tolerance", options.parameter_tolerance);
 }
 
+}  // namespace
+
+void checkInput(const PoseObservations& observations, const PinholeCamera& camera,
+                const Eigen::Isometry3d& initial, const PoseRefinementOptions& options) {
+  checkSizes(observations, options.depth_row);
+  checkCamera(camera);
+  checkPose(initial);
+  checkOptions(options);
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  checkElements(
+      "sigma", observations.sigma, [](float sigma) { return sigma > 0.0f && sigma <= kLargest; },
+      "finite and > 0");
+  checkElements(
+      "weight", observations.weight,
+      [](float weight) { return weight >= 0.0f && weight <= kLargest; }, "finite and >= 0");
+}
+
+ProjectionModel projectionModel(const PinholeCamera& camera, const PoseRefinementOptions& options) {
+  return {camera, options.depth_row, options.baseline_fx, options.min_depth};
+}
+
 bool isFinite(const PoseObservations& observations, std::size_t i) {
   return std::isfinite(observations.x[i]) && std::isfinite(observations.y[i]) &&
          std::isfinite(observations.z[i]) && std::isfinite(observations.u[i]) &&
@@ -139,26 +174,6 @@ PointMeasurement measurementOf(const PoseObservations& observations, std::size_t
     point.inverse_sigma.z() = 1.0 / sigma;
   }
   return point;
-}
-
-}  // namespace
-
-void checkInput(const PoseObservations& observations, const PinholeCamera& camera,
-                const Eigen::Isometry3d& initial, const PoseRefinementOptions& options) {
-  checkSizes(observations, options.depth_row);
-  checkCamera(camera);
-  checkPose(initial);
-  checkOptions(options);
-  for (std::size_t i = 0; i < observations.sigma.size(); ++i) {
-    checkPositive(element("sigma", i), observations.sigma[i]);
-  }
-  for (std::size_t i = 0; i < observations.weight.size(); ++i) {
-    checkNotNegative(element("weight", i), observations.weight[i]);
-  }
-}
-
-ProjectionModel projectionModel(const PinholeCamera& camera, const PoseRefinementOptions& options) {
-  return {camera, options.depth_row, options.baseline_fx, options.min_depth};
 }
 
 CollectedPoints collectPoints(const PoseObservations& observations,

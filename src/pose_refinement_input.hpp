@@ -19,6 +19,12 @@ void checkInput(const PoseObservations& observations, const PinholeCamera& camer
 
 ProjectionModel projectionModel(const PinholeCamera& camera, const PoseRefinementOptions& options);
 
+/// Whether all of a point's coordinates are finite.
+bool isFinite(const PoseObservations& observations, std::size_t i);
+
+PointMeasurement measurementOf(const PoseObservations& observations, std::size_t i,
+                               const PoseRefinementOptions& options);
+
 struct CollectedPoints {
   std::vector<WeightedPoint> points;  ///< Finite, weight > 0, in the caller's order.
   std::size_t not_finite = 0;         ///< Left out for a NaN or infinite coordinate.

@@ -181,10 +181,10 @@ std::unique_ptr<ceres::LossFunction> makeLoss(const WeightedPoint& point,
                                              ceres::TAKE_OWNERSHIP);
 }
 
-SolverOutcome solvePose(const std::vector<WeightedPoint>& points,
-                        const std::vector<std::uint8_t>& active, const ProjectionModel& model,
-                        const PoseRefinementOptions& options, bool robust,
-                        const Eigen::Isometry3d& start) {
+PoseOutcome solvePose(const std::vector<WeightedPoint>& points,
+                      const std::vector<std::uint8_t>& active, const ProjectionModel& model,
+                      const PoseRefinementOptions& options, bool robust,
+                      const Eigen::Isometry3d& start) {
   PoseVector pose = toPoseVector(start);
   ceres::Problem problem;
   problem.AddParameterBlock(pose.data(), kPoseSize, new PoseManifold);
@@ -197,8 +197,9 @@ SolverOutcome solvePose(const std::vector<WeightedPoint>& points,
   ceres::Solver::Summary summary;
   ceres::Solve(solverOptions(options), &problem, &summary);
 
-  SolverOutcome outcome;
-  outcome.pose = toIsometry(pose);
+  PoseOutcome solved;
+  solved.pose = toIsometry(pose);
+  SolverOutcome& outcome = solved.outcome;
   outcome.initial_cost = 2.0 * summary.initial_cost;  // Ceres halves the sum, eq. 10 does not.
   outcome.final_cost = 2.0 * summary.final_cost;
   // The first entry is the evaluation at the start.
@@ -208,7 +209,7 @@ SolverOutcome solvePose(const std::vector<WeightedPoint>& points,
                    std::isfinite(outcome.initial_cost) && std::isfinite(outcome.final_cost);
   outcome.converged = summary.termination_type == ceres::CONVERGENCE;
   outcome.message = summary.message;
-  return outcome;
+  return solved;
 }
 
 }  // namespace hmcdyn::detail

@@ -15,6 +15,7 @@
 
 #include <hmcdyn/pose_refinement.hpp>
 
+#include "pose_refinement_problem.hpp"
 #include "pose_refinement_residual.hpp"
 
 // The one place that knows which of Ceres' interfaces there is: Manifold came with 2.1,
@@ -86,21 +87,16 @@ struct WeightedPoint {
 std::unique_ptr<ceres::LossFunction> makeLoss(const WeightedPoint& point,
                                               const PoseRefinementOptions& options, bool robust);
 
-struct SolverOutcome {
+struct PoseOutcome {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  double initial_cost = 0.0;
-  double final_cost = 0.0;
-  int iterations = 0;
-  bool usable = false;  ///< The pose is finite and no worse than the start.
-  bool converged = false;
-  std::string message;
+  SolverOutcome outcome;
 };
 
 /// Minimises sum lambda_i^2 rho(|e_i|^2) over the points with active[i] != 0, all of which must
 /// be in front of the camera at `start`.
-SolverOutcome solvePose(const std::vector<WeightedPoint>& points,
-                        const std::vector<std::uint8_t>& active, const ProjectionModel& model,
-                        const PoseRefinementOptions& options, bool robust,
-                        const Eigen::Isometry3d& start);
+PoseOutcome solvePose(const std::vector<WeightedPoint>& points,
+                      const std::vector<std::uint8_t>& active, const ProjectionModel& model,
+                      const PoseRefinementOptions& options, bool robust,
+                      const Eigen::Isometry3d& start);
 
 }  // namespace hmcdyn::detail

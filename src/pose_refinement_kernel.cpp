@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pose_refinement_kernel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "lanes.hpp"
+
+namespace hmcdyn::detail {
+namespace {
+
+/// What the sums need of four points. e is unwhitened here: the factors hold the information.
+struct Linearised {
+  Lanes x, y, inverse_z;           // p / z and 1 / z in the camera's frame
+  Lanes factor_u, factor_v;        // f / sigma^2 times the squared focal length
+  Lanes residual_u, residual_v;    // f / sigma^2 times the focal length times the residual
+  Lanes third_x, third_y, third_z;  // dh_3/dp times (x, y, z), see addThirdRow()
+  Lanes factor_third, residual_third;
+};
+
+/// So many blocks are linearised before they are summed: the sums then stay in registers, and the
+/// linearised points in the first-level cache.
+constexpr std::size_t kChunk = 8;
+using Chunk = std::array<Linearised, kChunk * kBlock / kLanes>;
+
+// Sums over the points, lane by lane: h for the upper triangle of sum f J^T J, g for sum f J^T e.
+// h34 is zero, and h25 = -(h03 + h14) for the pixel rows.
+struct TranslationSums {
+  Lanes h03, h04, h05, h13, h14, h15, h23, h24, h33, h35, h44, h45, h55;
+};
+struct RotationSums {
+  Lanes h00, h01, h02, h11, h12, h22, g0, g1, g2, g3, g4, g5;
+};
+struct CostSums {
+  Lanes cost, behind;
+};
+struct Sums {
+  TranslationSums t;
+  RotationSums r;
+  CostSums c;
+  Lanes h25_third;
+};
+
+/// A pose and a camera, in scalars that the compiler can keep in registers.
+struct View {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+  double fx, fy, baseline_fx, nearest;
+};
+
+// The helpers below must become part of the loop that calls them, or the sums leave the registers.
+#define HMCDYN_INLINE [[gnu::always_inline]] inline
+
+/// Residuals, losses and their factors of kLanes points of a block; adds to cost and behind.
+template <DepthRow kRow, bool kHuber, bool kSwitch>
+HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const View& view,
+                             Linearised& linearised, double* squared_residuals, CostSums& sums) {
+  const Eigen::Matrix3d& r = view.rotation;
+  const Eigen::Vector3d& t = view.translation;
+  const Lanes wx = loadLanes(&block.x[first]);
+  const Lanes wy = loadLanes(&block.y[first]);
+  const Lanes wz = loadLanes(&block.z[first]);
+  const Lanes weight = loadLanes(&block.weight[first]);
+  const Lanes information = loadLanes(&block.information[first]);
+  const Lanes px = r(0, 0) * wx + r(0, 1) * wy + r(0, 2) * wz + t[0];
+  const Lanes py = r(1, 0) * wx + r(1, 1) * wy + r(1, 2) * wz + t[1];
+  const Lanes unbounded = r(2, 0) * wx + r(2, 1) * wy + r(2, 2) * wz + t[2];
+  // Behind the camera the formulas stay finite, too, and `missing` is positive.
+  const Lanes pz = larger(unbounded, Lanes{} + view.nearest);
+  const Lanes missing = pz - unbounded;
+  sums.behind += weight * missing;
+
+  const Lanes inverse_z = 1.0 / pz;
+  const Lanes x = px * inverse_z;
+  const Lanes y = py * inverse_z;
+  const Lanes du = loadLanes(&block.u[first]) - view.fx * x;
+  const Lanes dv = loadLanes(&block.v[first]) - view.fy * y;
+  Lanes s = information * (du * du + dv * dv);
+  Lanes third{};
+  if constexpr (kRow == DepthRow::kDepth) {
+    third = loadLanes(&block.third[first]) - pz;
+  } else if constexpr (kRow == DepthRow::kDisparity) {
+    third = loadLanes(&block.third[first]) - view.fx * x + view.baseline_fx * inverse_z;
+  }
+  if constexpr (kRow != DepthRow::kNone) {
+    s += loadLanes(&block.third_information[first]) * third * third;
+  }
+  constexpr double kLiftAbove = 1e300;  // the smallest `missing` there is becomes > kBehindCamera
+  storeLanes(smaller(s, Lanes{} + kBehindCamera) + kLiftAbove * missing, squared_residuals);
+
+  // Both losses without a branch. Huber: rho = min(s, d^2) + 2 d (q - d), rho' = d / q with
+  // q = max(sqrt(s), d). Geman-McClure: rho = share s, rho' = share^2, share = kappa / (kappa + s).
+  Lanes rho = s;
+  Lanes factor = weight;
+  if constexpr (kHuber) {
+    const Lanes d = loadLanes(&block.huber[first]);
+    const Lanes square = d * d;
+    const Lanes q = squareRoot(larger(s, square));
+    rho = smaller(s, square) + 2.0 * d * (q - d);
+    factor *= d / q;
+  }
+  if constexpr (kSwitch) {
+    const Lanes share = 1.0 / (1.0 + s * loadLanes(&block.inverse_kappa[first]));
+    rho *= share;
+    factor *= share * share;
+  }
+  sums.cost += weight * rho;
+
+  const Lanes pixel_factor = factor * information;
+  linearised.x = x;
+  linearised.y = y;
+  linearised.inverse_z = inverse_z;
+  linearised.factor_u = pixel_factor * (view.fx * view.fx);
+  linearised.factor_v = pixel_factor * (view.fy * view.fy);
+  linearised.residual_u = pixel_factor * view.fx * du;
+  linearised.residual_v = pixel_factor * view.fy * dv;
+  if constexpr (kRow != DepthRow::kNone) {
+    linearised.factor_third = factor * loadLanes(&block.third_information[first]);
+    linearised.residual_third = linearised.factor_third * third;
+  }
+  if constexpr (kRow == DepthRow::kDepth) {
+    linearised.third_x = px;
+    linearised.third_y = py;
+  } else if constexpr (kRow == DepthRow::kDisparity) {
+    linearised.third_z = view.baseline_fx * inverse_z - view.fx * x;  // z dh_3/dp_z
+  }
+}
+
+// The rows of dh/d(omega, v), each divided by its focal length:
+//   u: (-x y,        1 + x^2, -y, 1/z, 0,   -x/z)
+//   v: (-(1 + y^2),  x y,      x, 0,   1/z, -y/z)
+// Their weighted products share most of their factors, which the next two functions make use of.
+
+HMCDYN_INLINE void addTranslationPart(const Linearised& a, TranslationSums& sums) {
+  const Lanes u = a.factor_u * a.inverse_z;
+  const Lanes v = a.factor_v * a.inverse_z;
+  const Lanes ux = u * a.x;
+  const Lanes vy = v * a.y;
+  const Lanes both = ux * a.x + vy * a.y;
+  sums.h33 += u * a.inverse_z;
+  sums.h44 += v * a.inverse_z;
+  sums.h35 -= ux * a.inverse_z;
+  sums.h45 -= vy * a.inverse_z;
+  sums.h55 += both * a.inverse_z;
+  sums.h03 -= ux * a.y;
+  sums.h13 += u + ux * a.x;
+  sums.h23 -= u * a.y;
+  sums.h04 -= v + vy * a.y;
+  sums.h14 += vy * a.x;
+  sums.h24 += v * a.x;
+  sums.h05 += (both + v) * a.y;
+  sums.h15 -= (both + u) * a.x;
+}
+
+HMCDYN_INLINE void addRotationPartAndGradient(const Linearised& a, RotationSums& sums) {
+  const Lanes ux = a.factor_u * a.x;
+  const Lanes vy = a.factor_v * a.y;
+  const Lanes both = ux * a.x + vy * a.y;
+  const Lanes difference = ux * a.y - vy * a.x;
+  sums.h00 += (both * a.y + 2.0 * vy) * a.y + a.factor_v;
+  sums.h11 += (both * a.x + 2.0 * ux) * a.x + a.factor_u;
+  sums.h01 -= (both + a.factor_u + a.factor_v) * (a.x * a.y);
+  sums.h02 += difference * a.y - a.factor_v * a.x;
+  sums.h12 -= difference * a.x + a.factor_u * a.y;
+  sums.h22 += a.factor_u * (a.y * a.y) + a.factor_v * (a.x * a.x);
+  // dh^T e; e = z - h turns the sign in the end.
+  const Lanes along = a.x * a.residual_u + a.y * a.residual_v;
+  sums.g0 -= a.y * along + a.residual_v;
+  sums.g1 += a.x * along + a.residual_u;
+  sums.g2 += a.x * a.residual_v - a.y * a.residual_u;
+  sums.g3 += a.inverse_z * a.residual_u;
+  sums.g4 += a.inverse_z * a.residual_v;
+  sums.g5 -= a.inverse_z * along;
+}
+
+/// The row of depth is (p_y, -p_x, 0, 0, 0, 1).
+HMCDYN_INLINE void addDepthRow(const Linearised& a, Sums& sums) {
+  const Lanes mx = a.factor_third * a.third_x;
+  const Lanes my = a.factor_third * a.third_y;
+  sums.r.h00 += my * a.third_y;
+  sums.r.h01 -= my * a.third_x;
+  sums.r.h11 += mx * a.third_x;
+  sums.t.h05 += my;
+  sums.t.h15 -= mx;
+  sums.t.h55 += a.factor_third;
+  sums.r.g0 += a.residual_third * a.third_y;
+  sums.r.g1 -= a.residual_third * a.third_x;
+  sums.r.g5 += a.residual_third;
+}
+
+/// With dh_3/dp = (fx, 0, w) / z the row of disparity is (w y, fx - w x, -fx y, fx/z, 0, w/z).
+HMCDYN_INLINE void addDisparityRow(const Linearised& a, double fx, Sums& sums) {
+  const Lanes j0 = a.third_z * a.y;
+  const Lanes j1 = fx - a.third_z * a.x;
+  const Lanes j2 = -fx * a.y;
+  const Lanes j3 = fx * a.inverse_z;
+  const Lanes j5 = a.third_z * a.inverse_z;
+  const Lanes m0 = a.factor_third * j0;
+  const Lanes m1 = a.factor_third * j1;
+  const Lanes m2 = a.factor_third * j2;
+  const Lanes m3 = a.factor_third * j3;
+  sums.r.h00 += m0 * j0;
+  sums.r.h01 += m0 * j1;
+  sums.r.h02 += m0 * j2;
+  sums.t.h03 += m0 * j3;
+  sums.t.h05 += m0 * j5;
+  sums.r.h11 += m1 * j1;
+  sums.r.h12 += m1 * j2;
+  sums.t.h13 += m1 * j3;
+  sums.t.h15 += m1 * j5;
+  sums.r.h22 += m2 * j2;
+  sums.t.h23 += m2 * j3;
+  sums.h25_third += m2 * j5 + m0 * j3;  // m0 j3 went into h03, from which h25 is derived
+  sums.t.h33 += m3 * j3;
+  sums.t.h35 += m3 * j5;
+  sums.t.h55 += a.factor_third * j5 * j5;
+  sums.r.g0 += a.residual_third * j0;
+  sums.r.g1 += a.residual_third * j1;
+  sums.r.g2 += a.residual_third * j2;
+  sums.r.g3 += a.residual_third * j3;
+  sums.r.g5 += a.residual_third * j5;
+}
+
+CollapsedSystem systemOf(const Sums& sums) {
+  const TranslationSums& t = sums.t;
+  const RotationSums& r = sums.r;
+  Eigen::Matrix<double, 6, 6> h;
+  h.row(0) << total(r.h00), total(r.h01), total(r.h02), total(t.h03), total(t.h04), total(t.h05);
+  h.row(1) << 0.0, total(r.h11), total(r.h12), total(t.h13), total(t.h14), total(t.h15);
+  h.row(2) << 0.0, 0.0, total(r.h22), total(t.h23), total(t.h24), 0.0;
+  h.row(3) << 0.0, 0.0, 0.0, total(t.h33), 0.0, total(t.h35);
+  h.row(4) << 0.0, 0.0, 0.0, 0.0, total(t.h44), total(t.h45);
+  h.row(5) << 0.0, 0.0, 0.0, 0.0, 0.0, total(t.h55);
+  h(2, 5) = total(sums.h25_third) - h(0, 3) - h(1, 4);
+  CollapsedSystem system;
+  system.normal = h.selfadjointView<Eigen::Upper>();
+  system.gradient << -total(r.g0), -total(r.g1), -total(r.g2), -total(r.g3), -total(r.g4), -total(r.g5);
+  // The diagonal bounds the other entries.
+  const bool feasible = total(sums.c.behind) == 0.0 && system.normal.diagonal().allFinite() &&
+                        system.gradient.allFinite();
+  const double cost = total(sums.c.cost);
+  system.cost = feasible && std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+  return system;
+}
+
+template <DepthRow kRow, bool kHuber, bool kSwitch>
+CollapsedSystem collapseAll(const std::vector<PointBlock>& blocks, const View& view,
+                            double* squared_residuals) {
+  Chunk chunk;
+  Sums sums{};
+  for (std::size_t begin = 0; begin < blocks.size(); begin += kChunk) {
+    const std::size_t end = std::min(begin + kChunk, blocks.size());
+    std::size_t count = 0;
+    CostSums cost = sums.c;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t first = 0; first < kBlock; first += kLanes) {
+        linearise<kRow, kHuber, kSwitch>(blocks[i], first, view, chunk[count++],
+                                         squared_residuals + i * kBlock + first, cost);
+      }
+    }
+    sums.c = cost;
+    TranslationSums translation = sums.t;
+    for (std::size_t i = 0; i < count; ++i) {
+      addTranslationPart(chunk[i], translation);
+    }
+    sums.t = translation;
+    RotationSums rotation = sums.r;
+    for (std::size_t i = 0; i < count; ++i) {
+      addRotationPartAndGradient(chunk[i], rotation);
+    }
+    sums.r = rotation;
+    for (std::size_t i = 0; i < count && kRow != DepthRow::kNone; ++i) {
+      if constexpr (kRow == DepthRow::kDepth) {
+        addDepthRow(chunk[i], sums);
+      } else {
+        addDisparityRow(chunk[i], view.fx, sums);
+      }
+    }
+  }
+  return systemOf(sums);
+}
+
+template <DepthRow kRow>
+CollapsedSystem collapseRows(const std::vector<PointBlock>& blocks, const View& view,
+                             CollapseVariant variant, double* squared_residuals) {
+  if (variant.switchable) {
+    return variant.huber ? collapseAll<kRow, true, true>(blocks, view, squared_residuals)
+                         : collapseAll<kRow, false, true>(blocks, view, squared_residuals);
+  }
+  return variant.huber ? collapseAll<kRow, true, false>(blocks, view, squared_residuals)
+                       : collapseAll<kRow, false, false>(blocks, view, squared_residuals);
+}
+
+}  // namespace
+
+CollapsedSystem collapse(const std::vector<PointBlock>& blocks, const ProjectionModel& model,
+                         CollapseVariant variant, const Eigen::Matrix3d& rotation,
+                         const Eigen::Vector3d& translation,
+                         std::vector<double>& squared_residuals) {
+  const View view{rotation,        translation,       model.camera.fx,
+                  model.camera.fy, model.baseline_fx, model.min_depth};
+  switch (variant.depth_row) {
+    case DepthRow::kDepth:
+      return collapseRows<DepthRow::kDepth>(blocks, view, variant, squared_residuals.data());
+    case DepthRow::kDisparity:
+      return collapseRows<DepthRow::kDisparity>(blocks, view, variant, squared_residuals.data());
+    case DepthRow::kNone:
+      break;
+  }
+  return collapseRows<DepthRow::kNone>(blocks, view, variant, squared_residuals.data());
+}
+
+}  // namespace hmcdyn::detail
