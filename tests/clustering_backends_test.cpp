@@ -307,6 +307,41 @@ TEST(NeighbourTest, RoundsEachOperationInEveryBuild) {
   EXPECT_GT(fused_differs, 1000);
 }
 
+TEST(NeighbourTest, BlocksAgreeWithPoints) {
+  Random random(56);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::array<float, detail::kBlock> x{}, y{};
+    for (std::size_t i = 0; i < detail::kBlock; ++i) {
+      // Multiples of 1/8 around, with many at the radius of 5/8, or no point at all
+      const bool none = random.chance(0.1);
+      x[i] = none ? kNaN : static_cast<float>(random.integer(-6, 6)) / 8.0f;
+      y[i] = none ? kNaN : static_cast<float>(random.integer(-6, 6)) / 8.0f;
+    }
+    std::uint32_t expected = 0;
+    for (std::size_t i = 0; i < detail::kBlock; ++i) {
+      const bool near = x[i] * x[i] + y[i] * y[i] <= 25.0f / 64.0f;
+      expected |= near ? std::uint32_t{1} << i : 0;
+    }
+    const detail::Disc disc(5.0f / 8.0f);
+    EXPECT_EQ(disc.neighboursInBlock(x.data(), y.data(), 0.0f, 0.0f), expected);
+    EXPECT_EQ(disc.neighboursInBlockPortably(x.data(), y.data(), 0.0f, 0.0f), expected);
+  }
+}
+
+TEST(BitOperations, Transpose) {
+  Random random(57);
+  std::array<std::uint32_t, 32> from{}, to{};
+  for (std::uint32_t& row : from) {
+    row = static_cast<std::uint32_t>(random.uniform(0.0, 4294967296.0));
+  }
+  detail::transpose32(from.data(), to.data());
+  for (std::size_t i = 0; i < 32; ++i) {
+    for (std::size_t j = 0; j < 32; ++j) {
+      EXPECT_EQ((to[j] >> i) & 1U, (from[i] >> j) & 1U) << i << " " << j;
+    }
+  }
+}
+
 TEST(BitOperations, CountAndFind) {
   EXPECT_EQ(detail::countOnes(0), 0U);
   EXPECT_EQ(detail::countOnes(~std::uint64_t{0}), 64U);
@@ -314,6 +349,8 @@ TEST(BitOperations, CountAndFind) {
   for (std::uint32_t i = 0; i < 64; ++i) {
     EXPECT_EQ(detail::lowestOne(std::uint64_t{1} << i), i);
     EXPECT_EQ(detail::lowestOne(~std::uint64_t{0} << i), i);
+    EXPECT_EQ(detail::highestOne(std::uint64_t{1} << i), i);
+    EXPECT_EQ(detail::highestOne(~std::uint64_t{0} >> i), 63 - i);
   }
 }
 

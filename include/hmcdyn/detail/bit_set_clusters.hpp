@@ -2,9 +2,11 @@
 // Density clusters of few points in the plane: all pairs are compared, neighbourhoods are bit sets.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <hmcdyn/detail/bits.hpp>
@@ -19,25 +21,43 @@ struct BitSetWorkspace {
   std::vector<std::uint64_t> rows;     ///< Neighbours of each point, point by point.
   std::vector<std::uint64_t> reach;    ///< Cluster by cluster: core points and their neighbours.
   std::vector<UnnumberedCluster> clusters;
-  std::vector<int> number;
+  std::vector<int> number;  ///< Of each cluster.
+  std::vector<int> label;   ///< In whole blocks.
 };
 
-/// Sets bit j of point i's bits where i and j are neighbours, for j from `first` to first + 3.
-inline void markFourNeighbours(const PlanarPoints& points, std::size_t first, const Disc& disc,
-                               std::uint32_t* bits_of_point) {
-  const float* const x = points.x.data();
-  const float* const y = points.y.data();
-  const float xa = x[first], xb = x[first + 1], xc = x[first + 2], xd = x[first + 3];
-  const float ya = y[first], yb = y[first + 1], yc = y[first + 2], yd = y[first + 3];
-  const std::uint32_t bit = std::uint32_t{1} << (first % 32);
-  for (std::size_t block = 0; block < points.size; block += kLanes) {
-    for (std::size_t i = block; i < block + kLanes; ++i) {
-      const std::uint32_t a = disc.contains(x[i] - xa, y[i] - ya) ? bit : 0;
-      const std::uint32_t b = disc.contains(x[i] - xb, y[i] - yb) ? bit << 1 : 0;
-      const std::uint32_t c = disc.contains(x[i] - xc, y[i] - yc) ? bit << 2 : 0;
-      const std::uint32_t d = disc.contains(x[i] - xd, y[i] - yd) ? bit << 3 : 0;
-      bits_of_point[i] |= (a | b) | (c | d);
-    }
+/// Smallest value among the points of a block whose bit is set; infinity without any.
+inline float smallestOfBlock(std::uint32_t bits, const float* value) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::array<float, kBlock> low;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    low[i] = (bits & kBits.bit[i]) != 0 ? value[i] : kInfinity;
+  }
+  HMCDYN_KEEP_LOOP
+  for (std::size_t i = 0; i < kBlock / 2; ++i) {
+    low[i] = low[i + kBlock / 2] < low[i] ? low[i + kBlock / 2] : low[i];
+  }
+  HMCDYN_KEEP_LOOP
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    low[i] = low[i + kLanes] < low[i] ? low[i + kLanes] : low[i];
+  }
+  const float a = std::min(std::min(low[0], low[1]), std::min(low[2], low[3]));
+  const float b = std::min(std::min(low[4], low[5]), std::min(low[6], low[7]));
+  return std::min(a, b);
+}
+
+/// Bits of a block's points whose value is the wanted one.
+inline std::uint32_t equalInBlock(const float* value, float wanted) {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    bits |= value[i] == wanted ? kBits.bit[i] : 0;
+  }
+  return bits;
+}
+
+/// Gives the points of a block whose bit is set a label.
+inline void labelBlock(std::uint32_t bits, int new_label, int* label) {
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    label[i] = (bits & kBits.bit[i]) != 0 ? new_label : label[i];
   }
 }
 
@@ -70,15 +90,15 @@ class BitSetClusters {
     Set taken{};
     Set contested{};  // border points within reach of more than one cluster
     workspace_.clusters.clear();
-    workspace_.reach.clear();
+    workspace_.reach.resize(Words * points_.size);
     for (std::size_t w = 0; w < Words; ++w) {
       while (left[w] != 0) {
+        const std::size_t k = workspace_.clusters.size();
         const Set reach =
             growCluster(static_cast<std::uint32_t>(64 * w + lowestOne(left[w])), core);
-        workspace_.clusters.push_back(
-            {0.0f, 0.0f, static_cast<std::uint32_t>(workspace_.clusters.size())});
-        workspace_.reach.insert(workspace_.reach.end(), reach.begin(), reach.end());
+        workspace_.clusters.push_back({0.0f, 0.0f, static_cast<std::uint32_t>(k)});
         for (std::size_t v = 0; v < Words; ++v) {
+          workspace_.reach[Words * k + v] = reach[v];
           contested[v] |= taken[v] & reach[v];
           taken[v] |= reach[v];
           left[v] &= ~reach[v];
@@ -99,12 +119,25 @@ class BitSetClusters {
     return set;
   }
 
+  /// Blocks above the diagonal follow from those below.
   void compareAllPairs() {
+    const float* const x = points_.x.data();
+    const float* const y = points_.y.data();
     const std::size_t stride = points_.padded();
-    workspace_.columns.assign(2 * Words * stride, 0);
-    for (std::size_t j = 0; j < points_.size; j += 4) {
-      markFourNeighbours(points_, j, disc_, workspace_.columns.data() + j / 32 * stride);
+    workspace_.columns.resize(2 * Words * stride);
+    std::uint32_t* const columns = workspace_.columns.data();
+    for (std::size_t column = 0; column < points_.size; column += kBlock) {
+      std::uint32_t* const words = columns + column / kBlock * stride;
+      for (std::size_t i = column; i < points_.size; ++i) {
+        words[i] = disc_.neighboursInBlock(x + column, y + column, x[i], y[i]);
+      }
+      std::fill(words + points_.size, words + stride, 0U);
+      for (std::size_t row = column + kBlock; row < points_.size; row += kBlock) {
+        transpose32(words + row, columns + row / kBlock * stride + column);
+      }
     }
+    const std::size_t used = (points_.size + kBlock - 1) / kBlock;
+    std::fill(columns + used * stride, columns + 2 * Words * stride, 0U);
   }
 
   /// Turns columns into rows and counts.
@@ -114,39 +147,47 @@ class BitSetClusters {
     workspace_.rows.resize(Words * stride);
     std::uint64_t* const rows = workspace_.rows.data();
     Set core{};
-    for (std::size_t i = 0; i < points_.size; ++i) {
-      std::uint32_t neighbours = 0;
-      for (std::size_t w = 0; w < Words; ++w) {
-        const std::uint64_t word =
-            columns[2 * w * stride + i] |
-            (static_cast<std::uint64_t>(columns[(2 * w + 1) * stride + i]) << 32);
-        rows[Words * i + w] = word;
-        neighbours += countOnes(word);
+    for (std::size_t w = 0; w < Words; ++w) {
+      const std::size_t end = std::min(points_.size, 64 * w + 64);
+      std::uint64_t bits = 0;
+      for (std::size_t i = 64 * w; i < end; ++i) {
+        std::uint32_t neighbours = 0;
+        for (std::size_t v = 0; v < Words; ++v) {
+          const std::uint64_t high = columns[(2 * v + 1) * stride + i];
+          const std::uint64_t word = columns[2 * v * stride + i] | (high << 32);
+          rows[Words * i + v] = word;
+          neighbours += countOnes(word);
+        }
+        const std::uint8_t is_core = neighbours >= static_cast<std::uint32_t>(min_points) ? 1 : 0;
+        result.is_core[i] = is_core;
+        bits |= static_cast<std::uint64_t>(is_core) << (i % 64);
       }
-      const bool is_core = neighbours >= static_cast<std::uint32_t>(min_points);
-      result.is_core[i] = is_core ? 1 : 0;
-      core[i / 64] |= static_cast<std::uint64_t>(is_core ? 1 : 0) << (i % 64);
+      core[w] = bits;
     }
     return core;
   }
 
-  /// The core points that are connected with `seed`, and their neighbours.
+  /// The core points that are connected with `seed`, and their neighbours. Takes two points of a
+  /// word at a time, which do not wait for each other.
   Set growCluster(std::uint32_t seed, const Set& core) const {
-    Set reach{};
+    Set reach = row(seed);
     Set grown{};
-    Set frontier{};
-    frontier[seed / 64] = std::uint64_t{1} << (seed % 64);
-    for (std::uint64_t any = 1; any != 0;) {
-      forEachOne<Words>(frontier, [&](std::uint32_t i) {
-        for (std::size_t w = 0; w < Words; ++w) {
-          reach[w] |= workspace_.rows[Words * i + w];
-        }
-      });
-      any = 0;
+    grown[seed / 64] = std::uint64_t{1} << (seed % 64);
+    for (bool any = true; any;) {
+      any = false;
       for (std::size_t w = 0; w < Words; ++w) {
-        grown[w] |= frontier[w];
-        frontier[w] = reach[w] & core[w] & ~grown[w];
-        any |= frontier[w];
+        const std::uint64_t frontier = reach[w] & core[w] & ~grown[w];
+        if (frontier != 0) {
+          any = true;
+          const std::uint32_t low = lowestOne(frontier);
+          const std::uint32_t high = highestOne(frontier);
+          grown[w] |= (std::uint64_t{1} << low) | (std::uint64_t{1} << high);
+          const Set a = row(static_cast<std::uint32_t>(64 * w) + low);
+          const Set b = row(static_cast<std::uint32_t>(64 * w) + high);
+          for (std::size_t v = 0; v < Words; ++v) {
+            reach[v] |= a[v] | b[v];
+          }
+        }
       }
     }
     return reach;
@@ -160,31 +201,57 @@ class BitSetClusters {
     return reach;
   }
 
-  void writeLabels(const Set& core, Clustering& result) {
+  static std::uint32_t block(const Set& set, std::size_t b) {
+    return static_cast<std::uint32_t>(set[b / 2] >> (b % 2 * 32));
+  }
+
+  std::uint32_t coresInBlock(const Set& core, const UnnumberedCluster& cluster,
+                             std::size_t b) const {
+    return block(reachOf(cluster.index), b) & block(core, b);
+  }
+
+  void numberBySmallestCore(const Set& core) {
     std::vector<UnnumberedCluster>& clusters = workspace_.clusters;
+    const float* const x = points_.x.data();
+    for (UnnumberedCluster& cluster : clusters) {
+      cluster.x = std::numeric_limits<float>::infinity();
+      for (std::size_t i = 0; i < points_.size; i += kBlock) {
+        const std::uint32_t cores = coresInBlock(core, cluster, i / kBlock);
+        cluster.x = std::min(cluster.x, smallestOfBlock(cores, x + i));
+      }
+    }
+    numberClusters(clusters, workspace_.number);
+    const auto ties = [](const UnnumberedCluster& a, const UnnumberedCluster& b) {
+      return a.x == b.x;
+    };
+    if (std::adjacent_find(clusters.begin(), clusters.end(), ties) == clusters.end()) {
+      return;
+    }
+    for (UnnumberedCluster& cluster : clusters) {
+      cluster.y = std::numeric_limits<float>::infinity();
+      for (std::size_t i = 0; i < points_.size; i += kBlock) {
+        const std::uint32_t cores =
+            coresInBlock(core, cluster, i / kBlock) & equalInBlock(x + i, cluster.x);
+        cluster.y = std::min(cluster.y, smallestOfBlock(cores, points_.y.data() + i));
+      }
+    }
+    numberClusters(clusters, workspace_.number);
+  }
+
+  void writeLabels(const Set& core, Clustering& result) {
+    const std::vector<UnnumberedCluster>& clusters = workspace_.clusters;
     workspace_.number.assign(clusters.size(), 0);
     if (clusters.size() > 1) {
-      for (UnnumberedCluster& cluster : clusters) {
-        Set cores = reachOf(cluster.index);
-        for (std::size_t w = 0; w < Words; ++w) {
-          cores[w] &= core[w];
-        }
-        cluster.x = std::numeric_limits<float>::infinity();
-        forEachOne<Words>(cores, [&](std::uint32_t i) {
-          if (points_.x[i] < cluster.x || (points_.x[i] == cluster.x && points_.y[i] < cluster.y)) {
-            cluster.x = points_.x[i];
-            cluster.y = points_.y[i];
-          }
-        });
-      }
-      numberClusters(clusters, workspace_.number);
+      numberBySmallestCore(core);
     }
-    std::fill(result.label.begin(), result.label.end(), kNoise);
+    workspace_.label.assign(points_.padded(), kNoise);
     for (std::size_t k = 0; k < clusters.size(); ++k) {
-      const int number = workspace_.number[k];
-      int* const label = result.label.data();
-      forEachOne<Words>(reachOf(k), [&](std::uint32_t i) { label[i] = number; });
+      const Set reach = reachOf(k);
+      for (std::size_t i = 0; i < points_.size; i += kBlock) {
+        labelBlock(block(reach, i / kBlock), workspace_.number[k], workspace_.label.data() + i);
+      }
     }
+    std::copy_n(workspace_.label.begin(), points_.size, result.label.begin());
   }
 
   /// A border point goes to its nearest core point's cluster.
@@ -193,7 +260,7 @@ class BitSetClusters {
     for (std::size_t w = 0; w < Words; ++w) {
       cores[w] &= core[w];
     }
-    NearestCore nearest(disc_.squared_radius);
+    NearestCore nearest(disc_.squaredRadius());
     forEachOne<Words>(cores, [&](std::uint32_t j) {
       nearest.offer(disc_.power(points_.x[j] - points_.x[i], points_.y[j] - points_.y[i]),
                     points_.x[j], points_.y[j], j);

@@ -216,7 +216,7 @@ class GridClusters {
       near[static_cast<std::size_t>(row + 2)] = window(cell, row, -2, 2);
     }
     for (std::uint32_t i = core_end_[cell]; i < grid_.begin[cell + 1]; ++i) {
-      NearestCore nearest(disc_.squared_radius);
+      NearestCore nearest(disc_.squaredRadius());
       for (const Interval cells : near) {
         for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
           offerCores(i, other, nearest);
