@@ -17,8 +17,16 @@ set(HMCDYN_CORE_HEADERS
     filter_stage.hpp
     surface_depth.hpp
     motion_belief.hpp
+    detail/bit_set_clusters.hpp
+    detail/bits.hpp
+    detail/clustering_result.hpp
+    detail/grid.hpp
+    detail/grid_clusters.hpp
     detail/kd_tree.hpp
-    detail/minkowski.hpp)
+    detail/kd_tree_clusters.hpp
+    detail/minkowski.hpp
+    detail/planar_points.hpp
+    detail/union_find.hpp)
 set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp dynamic_feature_filter.hpp)
 set(HMCDYN_OPTIMIZATION_HEADERS pose_refinement.hpp)
 

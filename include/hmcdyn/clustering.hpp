@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <numeric>
+#include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,14 +13,15 @@
 
 #include <Eigen/Core>
 
-#include <hmcdyn/detail/kd_tree.hpp>
+#include <hmcdyn/detail/bit_set_clusters.hpp>
+#include <hmcdyn/detail/clustering_result.hpp>
+#include <hmcdyn/detail/grid_clusters.hpp>
+#include <hmcdyn/detail/kd_tree_clusters.hpp>
 #include <hmcdyn/detail/minkowski.hpp>
+#include <hmcdyn/detail/planar_points.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
-
-/// The label of a point that belongs to no cluster.
-inline constexpr int kNoise = -1;
 
 /// The paper fixes neither scales, radius nor MinPoints; docs/parameters.md has the sweep that led
 /// to these defaults.
@@ -54,96 +55,37 @@ inline void checkOptions(const ClusteringOptions& options) {
           "order", options.order, "a value in [1, 100], or infinity");
 }
 
-/// Clusters of N points.
-struct Clustering {
-  std::vector<int> label;             ///< N labels: 0 .. clusters - 1, or kNoise.
-  std::vector<std::uint8_t> is_core;  ///< N flags: 1 for a core point.
-  int clusters = 0;                   ///< Number of clusters.
+/// Memory that densityClusters and clusterBox reuse from call to call, with the last result.
+struct ClusteringWorkspace {
+  Clustering result;
+  detail::PlanarPoints points;
+  detail::BitSetWorkspace bit_sets;
+  detail::GridWorkspace grid;
 };
 
 namespace detail {
 
-/// Disjoint sets with path halving; the smaller index is the root, so the result does not depend on
-/// the order of the unions.
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) {
-    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
+/// Clusters workspace.points for p = 2; the backends agree, so which one is a matter of time.
+inline const Clustering& clusterPlanar(const ClusteringOptions& options,
+                                       ClusteringWorkspace& workspace) {
+  const PlanarPoints& points = workspace.points;
+  Clustering& result = workspace.result;
+  result.label.resize(points.size);
+  result.is_core.resize(points.size);
+  if (points.size <= kBitSetCapacity) {
+    clusterByBitSets(points, options.epsilon, options.min_points, workspace.bit_sets, result);
+    return result;
   }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
+  const GridLayout layout = layOutGrid(points, options.epsilon);
+  if (layout.rows > 0) {
+    clusterByGrid(points, layout, options.epsilon, options.min_points, workspace.grid, result);
+    return result;
   }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-/// Clusters finite points whose columns are in lexicographic order: ties then fall to the smaller
-/// index, and clusters come out numbered by their smallest core point.
-inline Clustering clusterSorted(const Eigen::MatrixXf& points, const MinkowskiBall& ball,
-                                int min_points) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  const Eigen::Index dimensions = points.rows();
-  const KdTree tree(points);
-  const float search = ball.enclosingSquaredRadius(dimensions);
-  const auto column = [&](std::size_t i) {
-    return points.col(static_cast<Eigen::Index>(i)).data();
-  };
-  const auto visitNeighbours = [&](std::size_t i, auto&& visit) {
-    tree.visitWithin(column(i), search, [&](std::uint32_t j) {
-      const float power = ball.power(column(i), column(j), dimensions);
-      if (ball.contains(power)) {
-        visit(j, power);
-      }
-    });
-  };
-
-  Clustering result;
-  result.label.assign(n, kNoise);
-  result.is_core.assign(n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    int neighbours = 0;
-    visitNeighbours(i, [&](std::uint32_t, float) { ++neighbours; });
-    result.is_core[i] = neighbours >= min_points ? 1 : 0;
-  }
-
-  UnionFind sets(n);
-  std::vector<std::int64_t> nearest_core(n, -1);
-  for (std::size_t i = 0; i < n; ++i) {
-    float nearest = std::numeric_limits<float>::infinity();
-    visitNeighbours(i, [&](std::uint32_t j, float power) {
-      if (result.is_core[j] == 0) {
-        return;
-      }
-      if (result.is_core[i] != 0) {
-        sets.unite(static_cast<std::uint32_t>(i), j);
-      } else if (power < nearest || (power == nearest && j < nearest_core[i])) {
-        nearest = power;
-        nearest_core[i] = j;
-      }
-    });
-  }
-
-  for (std::size_t i = 0; i < n; ++i) {
-    if (result.is_core[i] != 0) {
-      const std::uint32_t root = sets.find(static_cast<std::uint32_t>(i));
-      result.label[i] = root == i ? result.clusters++ : result.label[root];
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    if (nearest_core[i] >= 0) {
-      result.label[i] = result.label[static_cast<std::size_t>(nearest_core[i])];
-    }
-  }
+  // Scattered so widely that a grid would be mostly empty, or not finite.
+  Eigen::Matrix2Xf columns(2, static_cast<Eigen::Index>(points.size));
+  columns.row(0) = Eigen::Map<const Eigen::RowVectorXf>(points.x.data(), columns.cols());
+  columns.row(1) = Eigen::Map<const Eigen::RowVectorXf>(points.y.data(), columns.cols());
+  clusterByKdTree(columns, MinkowskiBall(2.0f, options.epsilon), options.min_points, result);
   return result;
 }
 
@@ -159,50 +101,45 @@ inline Clustering clusterSorted(const Eigen::MatrixXf& points, const MinkowskiBa
 /// and every point with a coordinate that is not finite, is noise. Clusters are numbered by their
 /// lexicographically smallest core point. So labels do not depend on the order of the points.
 ///
+/// Takes O(N) time for evenly spread points in the plane with p = 2, else O(N log N); O(N^2) where
+/// the neighbourhoods hold most of the points.
+///
 /// @param points D-by-N, a point a column.
+/// @param workspace keeps the memory and the result; valid until the next call with it. For points
+/// in the plane with p = 2, a call allocates nothing once the workspace has seen its like.
 /// @throws std::invalid_argument when an option is out of range, or points have no coordinates.
-inline Clustering densityClusters(const Eigen::Ref<const Eigen::MatrixXf>& points,
-                                  const ClusteringOptions& options = {}) {
+inline const Clustering& densityClusters(const Eigen::Ref<const Eigen::MatrixXf>& points,
+                                         const ClusteringOptions& options,
+                                         ClusteringWorkspace& workspace) {
   checkOptions(options);
   const auto n = static_cast<std::size_t>(points.cols());
   if (points.rows() == 0 && n > 0) {
     throw std::invalid_argument("densityClusters: " + std::to_string(n) +
                                 " points of 0 coordinates; expected at least 1");
   }
-  std::vector<Eigen::Index> order;
-  order.reserve(n);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (points.col(i).allFinite()) {
-      order.push_back(i);
-    }
+  if (points.rows() != 2 || options.order != 2.0f) {
+    workspace.result.label.resize(n);
+    workspace.result.is_core.resize(n);
+    detail::clusterByKdTree(points, detail::MinkowskiBall(options.order, options.epsilon),
+                            options.min_points, workspace.result);
+    return workspace.result;
   }
-  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    for (Eigen::Index k = 0; k < points.rows(); ++k) {
-      if (points(k, a) != points(k, b)) {
-        return points(k, a) < points(k, b);
-      }
-    }
-    return a < b;
-  });
+  workspace.points.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const bool finite = std::isfinite(points(0, column)) && std::isfinite(points(1, column));
+    workspace.points.x[i] = finite ? points(0, column) : kNaN;
+    workspace.points.y[i] = finite ? points(1, column) : kNaN;
+  }
+  return detail::clusterPlanar(options, workspace);
+}
 
-  Clustering result;
-  result.label.assign(n, kNoise);
-  result.is_core.assign(n, 0);
-  if (order.empty()) {
-    return result;
-  }
-  Eigen::MatrixXf sorted(points.rows(), static_cast<Eigen::Index>(order.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    sorted.col(static_cast<Eigen::Index>(i)) = points.col(order[i]);
-  }
-  const Clustering of_sorted = detail::clusterSorted(
-      sorted, detail::MinkowskiBall(options.order, options.epsilon), options.min_points);
-  result.clusters = of_sorted.clusters;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    result.label[static_cast<std::size_t>(order[i])] = of_sorted.label[i];
-    result.is_core[static_cast<std::size_t>(order[i])] = of_sorted.is_core[i];
-  }
-  return result;
+/// The same without a workspace.
+inline Clustering densityClusters(const Eigen::Ref<const Eigen::MatrixXf>& points,
+                                  const ClusteringOptions& options = {}) {
+  ClusteringWorkspace workspace;
+  densityClusters(points, options, workspace);
+  return std::move(workspace.result);
 }
 
 /// The HMC step (section III-B): density clusters of the points of one box over
@@ -210,21 +147,43 @@ inline Clustering densityClusters(const Eigen::Ref<const Eigen::MatrixXf>& point
 /// distance are noise.
 ///
 /// @param depth N depths (m). @param distance N distances (px).
+/// @param workspace keeps the memory and the result; valid until the next call with it.
 /// @throws std::invalid_argument when sizes differ or an option is out of range.
-inline Clustering clusterBox(Span<const float> depth, Span<const float> distance,
-                             const ClusteringOptions& options = {}) {
+inline const Clustering& clusterBox(Span<const float> depth, Span<const float> distance,
+                                    const ClusteringOptions& options,
+                                    ClusteringWorkspace& workspace) {
   if (depth.size() != distance.size()) {
     throw std::invalid_argument("clusterBox: " + std::to_string(depth.size()) + " depths, but " +
                                 std::to_string(distance.size()) +
                                 " distances; expected equal sizes");
   }
-  Eigen::MatrixXf points(2, static_cast<Eigen::Index>(depth.size()));
+  checkOptions(options);
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  workspace.points.resize(depth.size());
+  float* const x = workspace.points.x.data();
+  float* const y = workspace.points.y.data();
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    points.col(static_cast<Eigen::Index>(i))
-        << (hasDepth(depth[i]) ? options.depth_scale * depth[i] : kNaN),
-        options.distance_scale * distance[i];
+    const float z = options.depth_scale * depth[i];
+    const float d = options.distance_scale * distance[i];
+    const bool usable = (depth[i] > 0.0f) & (z <= kLargest) & (std::abs(d) <= kLargest);
+    x[i] = usable ? z : kNaN;
+    y[i] = usable ? d : kNaN;
   }
-  return densityClusters(points, options);
+  if (options.order == 2.0f) {
+    return detail::clusterPlanar(options, workspace);
+  }
+  Eigen::MatrixXf columns(2, static_cast<Eigen::Index>(depth.size()));
+  columns.row(0) = Eigen::Map<const Eigen::RowVectorXf>(x, columns.cols());
+  columns.row(1) = Eigen::Map<const Eigen::RowVectorXf>(y, columns.cols());
+  return densityClusters(columns, options, workspace);
+}
+
+/// The same without a workspace.
+inline Clustering clusterBox(Span<const float> depth, Span<const float> distance,
+                             const ClusteringOptions& options = {}) {
+  ClusteringWorkspace workspace;
+  clusterBox(depth, distance, options, workspace);
+  return std::move(workspace.result);
 }
 
 }  // namespace hmcdyn

@@ -20,6 +20,7 @@ class MinkowskiBall {
       power_ = radius;
     } else if (order == 2.0f) {
       power_ = radius * radius;
+      square_limit_ = 2.0f * power_;
     } else {
       power_ = std::pow(scale_ * radius, order);
     }
@@ -33,7 +34,7 @@ class MinkowskiBall {
     for (Eigen::Index k = 0; k < dimensions; ++k) {
       const float difference = std::abs(x[k] - y[k]);
       if (order_ == 2.0f) {
-        sum += difference * difference;
+        sum += boundedSquare(difference);
       } else if (order_ == 1.0f) {
         sum += difference;
       } else if (std::isinf(order_)) {
@@ -59,10 +60,18 @@ class MinkowskiBall {
   }
 
  private:
+  /// A square beyond the radius may come out smaller, but beyond the radius. With the limit in
+  /// between, no compiler fuses product and sum, which would round differently.
+  float boundedSquare(float difference) const {
+    const float square = difference * difference;
+    return square < square_limit_ ? square : square_limit_;
+  }
+
   float order_;
   float radius_;
   float scale_;
   float power_ = 0.0f;
+  float square_limit_ = 0.0f;
 };
 
 }  // namespace hmcdyn::detail
