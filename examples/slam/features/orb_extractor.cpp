@@ -90,16 +90,20 @@ OrbExtractor::OrbExtractor(const OrbOptions& options) : options_(options) {
   levels_.resize(static_cast<std::size_t>(options_.levels));
 }
 
-Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& mask) {
+Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& mask, int wanted) {
   checkImages(gray, mask);
+  if (wanted < 0) {
+    throw std::invalid_argument("OrbExtractor::extract: wanted is " + std::to_string(wanted) +
+                                "; expected a count >= 0");
+  }
   std::vector<int> available;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     makeLevel(i, gray);
     findCorners(levels_[i], mask);
     available.push_back(static_cast<int>(levels_[i].corners.size()));
   }
-  const std::vector<int> shares =
-      shareOverLevels(options_.features, available, options_.scale_factor);
+  const std::vector<int> shares = shareOverLevels(wanted > 0 ? wanted : options_.features,
+                                                  available, options_.scale_factor);
   const int total = std::accumulate(shares.begin(), shares.end(), 0);
   Features features;
   if (total > 0) {

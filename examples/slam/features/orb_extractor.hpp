@@ -46,8 +46,9 @@ class OrbExtractor {
   /// Ordered by level, then as selected.
   /// @param gray 8-bit, one channel. @param mask of the same size and type, key points lie where it
   /// is not 0; empty = everywhere.
-  /// @throws std::invalid_argument on an empty image, or another type or size.
-  Features extract(const cv::Mat& gray, const cv::Mat& mask = {});
+  /// @param wanted key points in place of OrbOptions::features; 0 = those.
+  /// @throws std::invalid_argument on an empty image, another type or size, or wanted < 0.
+  Features extract(const cv::Mat& gray, const cv::Mat& mask = {}, int wanted = 0);
 
   const OrbOptions& options() const noexcept { return options_; }
 

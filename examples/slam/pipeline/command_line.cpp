@@ -188,6 +188,10 @@ void declareTracking(CLI::App& app, SlamOptions& options) {
   app.add_option("--features", options.features.features, "ORB key points a frame")
       ->capture_default_str()
       ->group("Tracking");
+  app.add_option("--max-feature-factor", options.max_feature_factor,
+                 "So many times more key points at most where boxes cover much of the image")
+      ->capture_default_str()
+      ->group("Tracking");
   app.add_flag("!--no-mapping", options.mapping.enabled, "Without local bundle adjustment")
       ->group("Tracking");
   app.add_option("--max-depth", options.tracker.map.max_depth,

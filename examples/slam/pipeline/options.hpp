@@ -22,6 +22,8 @@ struct SlamOptions {
   std::string camera = "tum3";  ///< Preset or calibration file.
   DetectorOptions detector;
   OrbOptions features;
+  /// Up to so many times as many key points where boxes cover much of the image; 1 = never.
+  double max_feature_factor = 2.5;
   MotionFilterOptions filter;
   TrackerOptions tracker;
   LocalMapperOptions mapping;

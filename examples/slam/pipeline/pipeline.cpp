@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "slam/detection/detector_factory.hpp"
+#include "slam/pipeline/feature_budget.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -30,6 +31,7 @@ Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibrat
       valid_mask_(cornerMask(rectifier_)),
       detector_(makeDetector(options.detector)),
       extractor_(options.features),
+      max_feature_factor_(options.max_feature_factor),
       filter_(options.filter),
       tracker_(calibration.pinhole, options.tracker),
       mapper_(options.mapping) {}
@@ -53,8 +55,11 @@ FrameOutcome Pipeline::process(const RgbdFrame& raw) {
   outcome.boxes = times.measure("detect", [&] { return detect(raw, image); });
 
   Frame frame = times.measure("features", [&] {
-    return makeFrame(image.index, image.timestamp, extractor_.extract(image.gray, valid_mask_),
-                     image.depth, extractor_.options().scale_factor);
+    const int wanted =
+        featureBudget(extractor_.options().features,
+                      coveredShare(outcome.boxes, image.gray.size()), max_feature_factor_);
+    return makeFrame(image.index, image.timestamp,
+                     extractor_.extract(image.gray, valid_mask_, wanted), image.depth, extractor_.options().scale_factor);
   });
   outcome.filtered = times.measure(
       "filter", [&] { return filter_.filter(image.gray, image.depth, outcome.boxes, frame); });

@@ -58,6 +58,7 @@ class Pipeline {
   cv::Mat valid_mask_;  ///< Empty = everywhere.
   std::unique_ptr<ObjectDetector> detector_;
   OrbExtractor extractor_;
+  double max_feature_factor_;
   MotionFilter filter_;
   Tracker tracker_;
   LocalMapper mapper_;
