@@ -36,7 +36,7 @@ target_link_libraries(hmcdyn_core INTERFACE Eigen3::Eigen nanoflann::nanoflann)
 target_compile_features(hmcdyn_core INTERFACE cxx_std_17)
 add_library(hmcdyn::core ALIAS hmcdyn_core)
 
-add_library(hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/fundamental.cpp
+add_library(hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/flow_selection.cpp src/fundamental.cpp
                           src/dynamic_feature_filter.cpp)
 target_link_libraries(
   hmcdyn_vision

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -12,6 +11,8 @@
 
 #include <hmcdyn/dynamic_feature_filter.hpp>
 
+#include "flow_selection.hpp"
+
 namespace hmcdyn {
 namespace {
 
@@ -20,7 +21,7 @@ void checkInput(const DynamicFeatureFilterInput& input,
   if (input.pyramid == nullptr) {
     throw std::invalid_argument("filterDynamicFeatures: pyramid of the current frame is null");
   }
-  if (options.flow_background < 0 || !(options.flow_margin >= 0.0f)) {
+  if (options.flow_background < 0 || options.flow_in_boxes < 0 || !(options.flow_margin >= 0.0f)) {
     throw std::invalid_argument("DynamicFeatureFilterOptions: flow_background is " +
                                 std::to_string(options.flow_background) + ", flow_margin " +
                                 std::to_string(options.flow_margin) +
@@ -98,66 +99,13 @@ bool distancesWanted(const DynamicFeatureFilterInput& input,
                       [](float belief) { return belief > 0.0f; }));
 }
 
-/// The key points that get a distance, as arrays of their own.
-struct FlowSelection {
-  std::vector<std::size_t> source;  ///< Their numbers.
-  KeyPoints points;
-};
-
-/// Cell of a grid over the image, for spreading points: up to kCells a side.
-std::size_t cellOf(float u, float v, const cv::Size& size) {
-  constexpr float kCells = 12.0f;
-  const auto cell = [](float x, int extent) {
-    return std::clamp(x / static_cast<float>(extent) * kCells, 0.0f, kCells - 1.0f);
-  };
-  return static_cast<std::size_t>(cell(v, size.height)) * static_cast<std::size_t>(kCells) +
-         static_cast<std::size_t>(cell(u, size.width));
-}
-
-FlowSelection selectForFlow(const DynamicFeatureFilterInput& input,
-                            const DynamicFeatureFilterOptions& options) {
-  const KeyPointsView& points = input.points;
-  const cv::Size size = input.pyramid->empty() ? cv::Size(1, 1) : input.pyramid->front().size();
-  std::vector<std::uint8_t> chosen(points.size(), 0);
-  std::vector<std::size_t> others;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (options.flow_background == 0 ||
-        inAnyBox(input.boxes, points.u[i], points.v[i], options.flow_margin)) {
-      chosen[i] = 1;
-    } else if (std::isfinite(points.u[i]) && std::isfinite(points.v[i])) {
-      others.push_back(i);
-    }
-  }
-  // Round by round one more of each cell, in the order of the points, until there are enough.
-  const auto wanted = static_cast<std::size_t>(options.flow_background);
-  std::size_t count = 0;
-  for (std::uint32_t round = 1; count < wanted && !others.empty(); ++round) {
-    std::array<std::uint32_t, 144> taken{};
-    std::vector<std::size_t> left;
-    for (const std::size_t i : others) {
-      std::uint32_t& in_cell = taken[cellOf(points.u[i], points.v[i], size)];
-      if (in_cell == 0 && count < wanted) {
-        ++in_cell;
-        ++count;
-        chosen[i] = 1;
-      } else {
-        left.push_back(i);
-      }
-    }
-    others = std::move(left);
-  }
-  FlowSelection selection;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (chosen[i] != 0) {
-      selection.source.push_back(i);
-      selection.points.push_back(points.u[i], points.v[i], points.depth[i]);
-    }
-  }
-  return selection;
+/// Where nobody votes, every point in a box needs a distance of its own.
+internal::FlowBudget budgetOf(const DynamicFeatureFilterOptions& options, bool forms_beliefs) {
+  return {options.flow_margin, forms_beliefs ? options.flow_in_boxes : 0, options.flow_background};
 }
 
 /// Where the chosen points were in `frame` if they kept the pace that they had since `younger`.
-FlowMatches prolonged(const FlowSelection& selection, const EarlierFrame& frame,
+FlowMatches prolonged(const internal::FlowSelection& selection, const EarlierFrame& frame,
                       const EarlierFrame& younger, const FlowMatches& flow) {
   FlowMatches guess;
   if (!(frame.age > 0.0 && younger.age > 0.0)) {
@@ -172,7 +120,7 @@ FlowMatches prolonged(const FlowSelection& selection, const EarlierFrame& frame,
   return guess;
 }
 
-FlowMatches flowOf(const FlowSelection& selection, const EarlierFrame& frame,
+FlowMatches flowOf(const internal::FlowSelection& selection, const EarlierFrame& frame,
                    const DynamicFeatureFilterInput& input, const OpticalFlowOptions& options,
                    const FlowMatches& guess) {
   const FlowMatches found = trackIntoEarlierFrame(*input.pyramid, *frame.pyramid,
@@ -190,7 +138,7 @@ FlowMatches flowOf(const FlowSelection& selection, const EarlierFrame& frame,
 
 /// Steps 1 to 3 against one earlier frame; larger distances go into `distance`.
 EarlierFrameReport compareWith(const EarlierFrame& frame, const FlowMatches& guess,
-                               const FlowSelection& selection,
+                               const internal::FlowSelection& selection,
                                const DynamicFeatureFilterInput& input,
                                const DynamicFeatureFilterOptions& options,
                                DynamicFeatureFilterWorkspace& workspace,
@@ -213,6 +161,55 @@ EarlierFrameReport compareWith(const EarlierFrame& frame, const FlowMatches& gue
     keepLarger(egoMotionDistancesTo(frame, pairs, input, options.ego_motion), distance);
   }
   return report;
+}
+
+cv::Size imageSize(const FlowPyramid& pyramid) {
+  return pyramid.empty() ? cv::Size() : pyramid.front().size();
+}
+
+/// Steps 4 to 7 on the chosen points. The others in a dynamic box are unmatched, until the chosen
+/// ones vote on them.
+FilterStageResult stageOfSelection(const internal::FlowSelection& selection,
+                                   const DynamicFeatureFilterInput& input,
+                                   const DynamicFeatureFilterOptions& options,
+                                   const std::vector<float>& distance,
+                                   DynamicFeatureFilterWorkspace& workspace) {
+  workspace.distance.clear();
+  for (const std::size_t i : selection.source) {
+    workspace.distance.push_back(distance[i]);
+  }
+  const FilterStageResult& chosen = filterKeyPoints(selection.points.view(), workspace.distance,
+                                                    input.boxes, options.stage, workspace.stage);
+
+  const std::size_t n = input.points.size();
+  FilterStageResult all;
+  all.boxes = chosen.boxes;
+  all.frame = chosen.frame;
+  all.frame.points = n;
+  all.frame.points_in_dynamic_boxes = 0;
+  all.label.assign(n, PointLabel::kStatic);
+  all.weight.assign(n, 1.0f);
+  all.cluster.assign(n, kNoise);
+  for (std::size_t b = 0; b < chosen.boxes.size(); ++b) {
+    if (!chosen.boxes[b].verdict.is_dynamic) {
+      continue;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      if (input.boxes[b].contains(input.points.u[i], input.points.v[i])) {
+        all.frame.points_in_dynamic_boxes += all.label[i] == PointLabel::kStatic ? 1 : 0;
+        all.label[i] = PointLabel::kUnmatched;
+        all.weight[i] = std::min(
+            all.weight[i],
+            keptPointWeight(input.points.depth[i], chosen.boxes[b].anchor, options.stage.weights));
+      }
+    }
+  }
+  for (std::size_t k = 0; k < selection.source.size(); ++k) {
+    all.label[selection.source[k]] = chosen.label[k];
+    all.weight[selection.source[k]] = chosen.weight[k];
+    all.cluster[selection.source[k]] = chosen.cluster[k];
+  }
+  return all;
 }
 
 /// Step 6, extended: the points vote on each other.
@@ -250,10 +247,14 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
                                                  DynamicFeatureFilterWorkspace& workspace) {
   checkInput(input, options);
   checkKeyPoints(input.points);
+  const bool forms_beliefs =
+      options.use_belief && options.stage.rule == FilterRule::kHmc && !input.depth.empty();
   DynamicFeatureFilterResult result;
   result.distance.assign(input.points.size(), kNaN);
+  internal::FlowSelection selection;
   if (distancesWanted(input, options)) {
-    const FlowSelection selection = selectForFlow(input, options);
+    selection = internal::selectForFlow(input.points, input.boxes, imageSize(*input.pyramid),
+                                        budgetOf(options, forms_beliefs));
     for (std::size_t k = 0; k < input.earlier.size(); ++k) {
       const EarlierFrame& frame = input.earlier[k];
       const FlowMatches guess =
@@ -263,12 +264,13 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
           compareWith(frame, guess, selection, input, options, workspace, result.distance));
     }
   }
-  result.stage =
-      filterKeyPoints(input.points, result.distance, input.boxes, options.stage, workspace.stage);
-  if (options.use_belief && options.stage.rule == FilterRule::kHmc && !input.depth.empty()) {
-    result = withBelief(std::move(result), input, options, workspace);
+  if (!forms_beliefs) {
+    result.stage =
+        filterKeyPoints(input.points, result.distance, input.boxes, options.stage, workspace.stage);
+    return result;
   }
-  return result;
+  result.stage = stageOfSelection(selection, input, options, result.distance, workspace);
+  return withBelief(std::move(result), input, options, workspace);
 }
 
 DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,

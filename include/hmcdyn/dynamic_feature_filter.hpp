@@ -33,12 +33,15 @@ struct DynamicFeatureFilterOptions {
   EgoMotionOptions ego_motion;
   FilterStageOptions stage;
 
-  /// Optical flow is the dearest step: only the points that need a distance get one. These are all
-  /// points in a box or within this margin of one (px) ...
+  /// Optical flow is the dearest step: only the points that need a distance get one. Those in a box
+  /// or within this margin of one (px) do ...
   float flow_margin = 40.0f;
+  /// ... up to so many, spread over the image, where beliefs are formed: the others are judged by
+  /// their neighbours. 0 = all ...
+  int flow_in_boxes = 250;
   /// ... and so many others, spread over the image, for the camera's motion. 0 = all of them, and
   /// in frames without a box, too.
-  int flow_background = 300;
+  int flow_background = 200;
 
   /// Forms beliefs where the frame's depth image is given; not for the peers' rules.
   bool use_belief = true;

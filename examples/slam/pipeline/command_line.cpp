@@ -178,6 +178,10 @@ void declareBelief(CLI::App& app, SlamOptions& options) {
   app.add_flag("--forward-backward", flow.forward_backward,
                "Check matches of optical flow by tracking forth again, for twice the time")
       ->group("Belief");
+  app.add_option("--flow-in-boxes", filter.flow_in_boxes,
+                 "Key points in boxes that are followed; their neighbours vote on the others; 0 = all")
+      ->capture_default_str()
+      ->group("Belief");
   app.add_option("--flow-background", filter.flow_background,
                  "Key points far from every box that are followed for the camera's motion; 0 = all")
       ->capture_default_str()
