@@ -69,7 +69,8 @@ int nextRound(int round, bool settled, const PoseRefinementOptions& options) {
 PoseRefinementResult stopped(PoseRefinementResult result, Termination why,
                              const std::string& account) {
   result.termination = why;
-  result.message = std::string(toString(why)) + ": " + account;
+  result.message.reserve(64);
+  result.message.append(toString(why)).append(": ").append(account);
   return result;
 }
 

@@ -22,9 +22,9 @@ float zeroIfFinite(const PoseObservations& observations, std::size_t i) {
 /// The places at the end that no point takes.
 PointBlock unusedBlock() {
   PointBlock block;
-  for (BlockField* field : {&block.x, &block.y, &block.u, &block.v, &block.information,
-                            &block.weight, &block.third, &block.third_information,
-                            &block.inverse_kappa}) {
+  for (BlockField* field :
+       {&block.x, &block.y, &block.u, &block.v, &block.information, &block.weight, &block.third,
+        &block.third_information, &block.inverse_kappa}) {
     field->fill(0.0);
   }
   block.z.fill(1.0);
@@ -37,12 +37,11 @@ PointBlock unusedBlock() {
 void CollapsedPoints::linearise(Linearisation& at, CollapseVariant variant) const {
   const Eigen::Isometry3d pose = toIsometry(at.pose);
   at.squared_residuals.resize(blocks.size() * kBlock);
-  at.system = collapse(blocks, model, variant, pose.linear(), pose.translation(),
-                       at.squared_residuals);
+  at.system =
+      collapse(blocks, model, variant, pose.linear(), pose.translation(), at.squared_residuals);
 }
 
-void CollapsedPoseProblem::assign(const PoseObservations& observations,
-                                  const PinholeCamera& camera,
+void CollapsedPoseProblem::assign(const PoseObservations& observations, const PinholeCamera& camera,
                                   const PoseRefinementOptions& options) {
   options_ = options;
   points_.model = projectionModel(camera, options);
@@ -139,8 +138,7 @@ void CollapsedPoseProblem::fillBlocks(const PoseObservations& observations) {
 }
 
 void CollapsedPoseProblem::fillThirdRow(const PoseObservations& observations) {
-  const double origin =
-      options_.depth_row == DepthRow::kDisparity ? points_.model.camera.cx : 0.0;
+  const double origin = options_.depth_row == DepthRow::kDisparity ? points_.model.camera.cx : 0.0;
   const auto has_row = [&](std::size_t i) { return hasDepth(observations.depth[i]); };
   fill(&PointBlock::third, [&](std::size_t i) {
     return measurementOf(observations, i, options_).observed.z() - origin;
@@ -159,8 +157,7 @@ void CollapsedPoseProblem::fillThirdRow(const PoseObservations& observations) {
 
 void CollapsedPoseProblem::fillSwitches(const PoseObservations& observations) {
   for (std::size_t j = 0; j < count_; ++j) {
-    const bool suspect =
-        !observations.weight.empty() && observations.weight[indexOf(j)] < 1.0f;
+    const bool suspect = !observations.weight.empty() && observations.weight[indexOf(j)] < 1.0f;
     PointBlock& block = points_.blocks[j / kBlock];
     block.inverse_kappa[j % kBlock] = suspect ? 1.0 / options_.kappa : 0.0;
     if (suspect) {
@@ -176,8 +173,7 @@ CollapseVariant CollapsedPoseProblem::variant(bool robust) const {
 
 void CollapsedPoseProblem::setActive(std::size_t i, bool active) {
   active_[i] = active ? 1 : 0;
-  points_.blocks[i / kBlock].weight[i % kBlock] =
-      active ? square_weight_[i] : 0.0;
+  points_.blocks[i / kBlock].weight[i % kBlock] = active ? square_weight_[i] : 0.0;
 }
 
 std::size_t CollapsedPoseProblem::start(const Eigen::Isometry3d& pose) {
@@ -221,8 +217,7 @@ SolverOutcome CollapsedPoseProblem::solve(bool robust) {
   outcome.iterations = descent.iterations;
   outcome.usable = current_.pose.allFinite();
   outcome.converged = descent.stop != nullptr;
-  outcome.message = outcome.converged ? std::string(descent.stop) + " reached"
-                                      : "max_iterations reached";
+  outcome.message = outcome.converged ? descent.stop : "max_iterations reached";
   return outcome;
 }
 

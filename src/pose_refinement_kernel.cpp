@@ -13,9 +13,9 @@ namespace {
 
 /// What the sums need of four points. e is unwhitened here: the factors hold the information.
 struct Linearised {
-  Lanes x, y, inverse_z;           // p / z and 1 / z in the camera's frame
-  Lanes factor_u, factor_v;        // f / sigma^2 times the squared focal length
-  Lanes residual_u, residual_v;    // f / sigma^2 times the focal length times the residual
+  Lanes x, y, inverse_z;            // p / z and 1 / z in the camera's frame
+  Lanes factor_u, factor_v;         // f / sigma^2 times the squared focal length
+  Lanes residual_u, residual_v;     // f / sigma^2 times the focal length times the residual
   Lanes third_x, third_y, third_z;  // dh_3/dp times (x, y, z), see addThirdRow()
   Lanes factor_third, residual_third;
 };
@@ -236,7 +236,8 @@ CollapsedSystem systemOf(const Sums& sums) {
   h(2, 5) = total(sums.h25_third) - h(0, 3) - h(1, 4);
   CollapsedSystem system;
   system.normal = h.selfadjointView<Eigen::Upper>();
-  system.gradient << -total(r.g0), -total(r.g1), -total(r.g2), -total(r.g3), -total(r.g4), -total(r.g5);
+  system.gradient << -total(r.g0), -total(r.g1), -total(r.g2), -total(r.g3), -total(r.g4),
+      -total(r.g5);
   // The diagonal bounds the other entries.
   const bool feasible = total(sums.c.behind) == 0.0 && system.normal.diagonal().allFinite() &&
                         system.gradient.allFinite();

@@ -20,8 +20,8 @@ namespace hmcdyn::detail {
 constexpr std::size_t kBlock = 8;
 using BlockField = std::array<double, kBlock>;
 
-/// Fields that a variant does without are not read. Unused places at the end have weight 0 and stand
-/// where every formula is finite.
+/// Fields that a variant does without are not read. Unused places at the end have weight 0 and
+/// stand where every formula is finite.
 struct PointBlock {
   // Does not write zeros that would be overwritten anyway.
   PointBlock() {}  // NOLINT(cppcoreguidelines-pro-type-member-init,modernize-use-equals-default)
@@ -52,8 +52,8 @@ struct CollapseVariant {
 
 /// With f_i = lambda_i^2 rho'(|e_i|^2), J_i = de_i/d(omega, v) as in pointResidual().
 struct CollapsedSystem {
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();      ///< sum f J^T J
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();    ///< sum f J^T e
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();    ///< sum f J^T J
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();  ///< sum f J^T e
   double cost = 0.0;  ///< sum lambda^2 rho(|e|^2); infinite where a point of positive weight is
                       ///< not in front of the camera, or a sum is not finite.
 };

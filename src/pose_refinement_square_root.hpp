@@ -34,22 +34,23 @@ inline Eigen::Matrix<double, 7, 1> squareRootOf(const CollapsedSystem& system,
     residuals.head<6>() = cholesky.solveLower(system.gradient);
   } else {
     const Vector6d diagonal = system.normal.diagonal();
-    const Vector6d scale = diagonal.unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+    const Vector6d scale =
+        diagonal.unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
     const Matrix6d scaled = scale.asDiagonal() * system.normal * scale.asDiagonal();
     const Eigen::LDLT<Matrix6d> pivoted(scaled);
     const Vector6d pivots = pivoted.vectorD();
-    const Matrix6d upper = Matrix6d(pivoted.matrixU()) * pivoted.transpositionsP();
+    const Matrix6d permutation = pivoted.transpositionsP() * Matrix6d::Identity();
+    const Matrix6d upper = pivoted.matrixU() * permutation;
     Vector6d y = pivoted.transpositionsP() * scale.cwiseProduct(system.gradient);
     pivoted.matrixL().solveInPlace(y);
     for (int k = 0; k < 6; ++k) {
       const double size = pivots(k) > kSmallestPivot ? std::sqrt(pivots(k)) : 0.0;
       residuals(k) = size > 0.0 ? y(k) / size : 0.0;
-      jacobian.row(k) = size * upper.row(k).cwiseProduct(
-                                        diagonal.transpose().cwiseMax(0.0).cwiseSqrt());
+      jacobian.row(k) =
+          size * upper.row(k).cwiseProduct(diagonal.transpose().cwiseMax(0.0).cwiseSqrt());
     }
   }
-  residuals(6) =
-      std::sqrt(std::max(0.0, system.cost - residuals.head<6>().squaredNorm()));
+  residuals(6) = std::sqrt(std::max(0.0, system.cost - residuals.head<6>().squaredNorm()));
   return residuals;
 }
 
