@@ -43,11 +43,28 @@ struct Sums {
   Lanes h25_third;
 };
 
-/// A pose and a camera, in scalars that the compiler can keep in registers.
+Lanes spread(double value) { return Lanes{} + value; }
+
+/// A pose and a camera, spread over the lanes once.
 struct View {
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-  double fx, fy, baseline_fx, nearest;
+  View(const ProjectionModel& model, const Eigen::Matrix3d& rotation,
+       const Eigen::Vector3d& translation)
+      : fx(spread(model.camera.fx)),
+        fy(spread(model.camera.fy)),
+        square_fx(fx * fx),
+        square_fy(fy * fy),
+        baseline_fx(spread(model.baseline_fx)),
+        nearest(spread(model.min_depth)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      r[i] = {spread(rotation(row, 0)), spread(rotation(row, 1)), spread(rotation(row, 2))};
+      t[i] = spread(translation(row));
+    }
+  }
+
+  std::array<std::array<Lanes, 3>, 3> r;
+  std::array<Lanes, 3> t;
+  Lanes fx, fy, square_fx, square_fy, baseline_fx, nearest;
 };
 
 // The helpers below must become part of the loop that calls them, or the sums leave the registers.
@@ -57,18 +74,18 @@ struct View {
 template <DepthRow kRow, bool kHuber, bool kSwitch>
 HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const View& view,
                              Linearised& linearised, double* squared_residuals, CostSums& sums) {
-  const Eigen::Matrix3d& r = view.rotation;
-  const Eigen::Vector3d& t = view.translation;
+  const auto& r = view.r;
+  const auto& t = view.t;
   const Lanes wx = loadLanes(&block.x[first]);
   const Lanes wy = loadLanes(&block.y[first]);
   const Lanes wz = loadLanes(&block.z[first]);
   const Lanes weight = loadLanes(&block.weight[first]);
   const Lanes information = loadLanes(&block.information[first]);
-  const Lanes px = r(0, 0) * wx + r(0, 1) * wy + r(0, 2) * wz + t[0];
-  const Lanes py = r(1, 0) * wx + r(1, 1) * wy + r(1, 2) * wz + t[1];
-  const Lanes unbounded = r(2, 0) * wx + r(2, 1) * wy + r(2, 2) * wz + t[2];
+  const Lanes px = r[0][0] * wx + r[0][1] * wy + r[0][2] * wz + t[0];
+  const Lanes py = r[1][0] * wx + r[1][1] * wy + r[1][2] * wz + t[1];
+  const Lanes unbounded = r[2][0] * wx + r[2][1] * wy + r[2][2] * wz + t[2];
   // Behind the camera the formulas stay finite, too, and `missing` is positive.
-  const Lanes pz = larger(unbounded, Lanes{} + view.nearest);
+  const Lanes pz = larger(unbounded, view.nearest);
   const Lanes missing = pz - unbounded;
   sums.behind += weight * missing;
 
@@ -88,7 +105,7 @@ HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const V
     s += loadLanes(&block.third_information[first]) * third * third;
   }
   constexpr double kLiftAbove = 1e300;  // the smallest `missing` there is becomes > kBehindCamera
-  storeLanes(smaller(s, Lanes{} + kBehindCamera) + kLiftAbove * missing, squared_residuals);
+  storeLanes(smaller(s, spread(kBehindCamera)) + kLiftAbove * missing, squared_residuals);
 
   // Both losses without a branch. Huber: rho = min(s, d^2) + 2 d (q - d), rho' = d / q with
   // q = max(sqrt(s), d). Geman-McClure: rho = share s, rho' = share^2, share = kappa / (kappa + s).
@@ -112,8 +129,8 @@ HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const V
   linearised.x = x;
   linearised.y = y;
   linearised.inverse_z = inverse_z;
-  linearised.factor_u = pixel_factor * (view.fx * view.fx);
-  linearised.factor_v = pixel_factor * (view.fy * view.fy);
+  linearised.factor_u = pixel_factor * view.square_fx;
+  linearised.factor_v = pixel_factor * view.square_fy;
   linearised.residual_u = pixel_factor * view.fx * du;
   linearised.residual_v = pixel_factor * view.fy * dv;
   if constexpr (kRow != DepthRow::kNone) {
@@ -191,7 +208,7 @@ HMCDYN_INLINE void addDepthRow(const Linearised& a, Sums& sums) {
 }
 
 /// With dh_3/dp = (fx, 0, w) / z the row of disparity is (w y, fx - w x, -fx y, fx/z, 0, w/z).
-HMCDYN_INLINE void addDisparityRow(const Linearised& a, double fx, Sums& sums) {
+HMCDYN_INLINE void addDisparityRow(const Linearised& a, const Lanes& fx, Sums& sums) {
   const Lanes j0 = a.third_z * a.y;
   const Lanes j1 = fx - a.third_z * a.x;
   const Lanes j2 = -fx * a.y;
@@ -300,8 +317,7 @@ CollapsedSystem collapse(const std::vector<PointBlock>& blocks, const Projection
                          CollapseVariant variant, const Eigen::Matrix3d& rotation,
                          const Eigen::Vector3d& translation,
                          std::vector<double>& squared_residuals) {
-  const View view{rotation,        translation,       model.camera.fx,
-                  model.camera.fy, model.baseline_fx, model.min_depth};
+  const View view(model, rotation, translation);
   switch (variant.depth_row) {
     case DepthRow::kDepth:
       return collapseRows<DepthRow::kDepth>(blocks, view, variant, squared_residuals.data());

@@ -30,8 +30,7 @@ inline Eigen::Matrix<double, 7, 1> squareRootOf(const CollapsedSystem& system,
   Cholesky6 cholesky;
   cholesky.compute(system.normal);
   if (cholesky.smallestPivot() > kSmallestPivot) {
-    jacobian.topRows<6>().triangularView<Eigen::Upper>() = cholesky.lower().transpose();
-    residuals.head<6>() = cholesky.solveLower(system.gradient);
+    residuals.head<6>() = cholesky.squareRoot(system.gradient, jacobian);
   } else {
     const Vector6d diagonal = system.normal.diagonal();
     const Vector6d scale =
