@@ -70,9 +70,8 @@ PoseInput makeInput(std::mt19937& random, std::size_t points) {
     input.z.push_back(static_cast<float>(world.z()));
     input.u.push_back(static_cast<float>(outlier ? 640.0 * uniform(random) : u + normal(random)));
     input.v.push_back(static_cast<float>(outlier ? 480.0 * uniform(random) : v + normal(random)));
-    input.weight.push_back(uniform(random) < 1.0 / 3.0
-                               ? static_cast<float>(0.1 + 0.9 * uniform(random))
-                               : 1.0f);
+    input.weight.push_back(
+        uniform(random) < 1.0 / 3.0 ? static_cast<float>(0.1 + 0.9 * uniform(random)) : 1.0f);
   }
   return input;
 }
@@ -184,12 +183,14 @@ void registerAll(std::size_t points) {
     std::array<char, 32> label{};
     std::snprintf(label.data(), label.size(), "tolerance %.0e", tolerance);
     const Solve solve = contender.solve;
-    add(contender.name,
+    add(
+        contender.name,
         [solve, tolerance](const PoseInput& input) { return solve(input, tolerance); },
         label.data());
   }
   const auto workspace = std::make_shared<hmcdyn::PoseRefinementWorkspace>();
-  add("hmcdyn_rounds",
+  add(
+      "hmcdyn_rounds",
       [workspace](const PoseInput& input) {
         return refinePose(input.view(), input.camera, input.initial, {}, *workspace)
             .camera_from_world;

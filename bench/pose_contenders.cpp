@@ -230,9 +230,8 @@ Eigen::Isometry3d solveWithCeres(const PoseInput& input, double tolerance) {
   ceres::Problem problem;
   problem.AddParameterBlock(pose.data(), 7, new Se3Manifold);
   for (std::size_t i = 0; i < input.x.size(); ++i) {
-    problem.AddResidualBlock(
-        new AnalyticCost(worldPoint(input, i), pixel(input, i), input.camera),
-        weightedHuber(input.weight[i]), pose.data());
+    problem.AddResidualBlock(new AnalyticCost(worldPoint(input, i), pixel(input, i), input.camera),
+                             weightedHuber(input.weight[i]), pose.data());
   }
   solve(problem, tolerance);
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();

@@ -3,14 +3,12 @@
 // and takes several times as long here, which shows: a pose of 50 points factorises ten times.
 #pragma once
 
-#include <array>
-#include <cmath>
-
 #include <Eigen/Core>
 
 namespace hmcdyn::detail {
 
-/// H = L L^T. Has the interface that ceres::TinySolver expects of a linear solver.
+/// H = L D L^T, L with a unit diagonal. Has the interface that ceres::TinySolver expects of a
+/// linear solver.
 class Cholesky6 {
  public:
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -20,69 +18,95 @@ class Cholesky6 {
   /// or NaN, and solutions that mean nothing.
   void compute(const Matrix6d& h) {
     smallest_pivot_ = 1.0;
+    Matrix6d scaled;  // L D
 #pragma GCC unroll 6
     for (int j = 0; j < 6; ++j) {
       double pivot = h(j, j);
 #pragma GCC unroll 6
       for (int k = 0; k < j; ++k) {
-        pivot -= lower_(j, k) * lower_(j, k);
+        pivot -= scaled(j, k) * lower_(j, k);
       }
-      // Not std::min: a NaN has to stay.
-      smallest_pivot_ = pivot >= smallest_pivot_ * h(j, j) ? smallest_pivot_ : pivot / h(j, j);
-      const double root = std::sqrt(pivot);
-      lower_(j, j) = root;
-      inverse_diagonal_[static_cast<std::size_t>(j)] = 1.0 / root;
+      pivots_[j] = pivot;
+      inverse_pivots_[j] = 1.0 / pivot;
 #pragma GCC unroll 6
       for (int i = j + 1; i < 6; ++i) {
         double sum = h(i, j);
 #pragma GCC unroll 6
         for (int k = 0; k < j; ++k) {
-          sum -= lower_(i, k) * lower_(j, k);
+          sum -= scaled(i, k) * lower_(j, k);
         }
-        lower_(i, j) = sum * inverse_diagonal_[static_cast<std::size_t>(j)];
+        scaled(i, j) = sum;
+        lower_(i, j) = sum * inverse_pivots_[j];
       }
     }
+    const Vector6d shares = pivots_.cwiseQuotient(h.diagonal());
+    smallest_pivot_ = shares.allFinite() ? shares.minCoeff() : 0.0;
   }
 
   /// The least share of a diagonal entry of H that the columns before it leave: 1 for a diagonal
   /// matrix, 0 for a singular one, whatever the units of its rows.
   double smallestPivot() const { return smallest_pivot_; }
 
-  /// The strict upper triangle is not defined.
-  const Matrix6d& lower() const { return lower_; }
-
-  /// L^-1 b
-  Vector6d solveLower(const Vector6d& b) const {
-    Vector6d y;
+  /// Writes the upper triangle of U = D^1/2 L^T, for which U^T U = H, and returns y = U^-T b.
+  template <class Upper>
+  Vector6d squareRoot(const Vector6d& b, Upper&& upper) const {
+    const Vector6d roots = pivots_.cwiseSqrt();
 #pragma GCC unroll 6
     for (int i = 0; i < 6; ++i) {
-      double sum = b[i];
+      upper(i, i) = roots[i];
 #pragma GCC unroll 6
-      for (int k = 0; k < i; ++k) {
-        sum -= lower_(i, k) * y[k];
+      for (int j = i + 1; j < 6; ++j) {
+        upper(i, j) = roots[i] * lower_(j, i);
       }
-      y[i] = sum * inverse_diagonal_[static_cast<std::size_t>(i)];
     }
-    return y;
+    return solveLower(b).cwiseProduct(inverse_pivots_).cwiseProduct(roots);
   }
 
   /// H^-1 b
   Vector6d solve(const Vector6d& b) const {
-    Vector6d x = solveLower(b);
+    Vector6d x = solveLower(b).cwiseProduct(inverse_pivots_);
 #pragma GCC unroll 6
-    for (int i = 5; i >= 0; --i) {
+    for (int i = 4; i >= 0; --i) {
 #pragma GCC unroll 6
       for (int k = i + 1; k < 6; ++k) {
         x[i] -= lower_(k, i) * x[k];
       }
-      x[i] *= inverse_diagonal_[static_cast<std::size_t>(i)];
     }
     return x;
   }
 
+  Matrix6d inverse() const {
+    Matrix6d lower_inverse = Matrix6d::Identity();
+#pragma GCC unroll 6
+    for (int j = 0; j < 6; ++j) {
+#pragma GCC unroll 6
+      for (int i = j + 1; i < 6; ++i) {
+        double sum = 0.0;
+#pragma GCC unroll 6
+        for (int k = j; k < i; ++k) {
+          sum -= lower_(i, k) * lower_inverse(k, j);
+        }
+        lower_inverse(i, j) = sum;
+      }
+    }
+    return lower_inverse.transpose() * inverse_pivots_.asDiagonal() * lower_inverse;
+  }
+
  private:
-  Matrix6d lower_;
-  std::array<double, 6> inverse_diagonal_{};
+  Vector6d solveLower(const Vector6d& b) const {
+    Vector6d y = b;
+#pragma GCC unroll 6
+    for (int i = 1; i < 6; ++i) {
+#pragma GCC unroll 6
+      for (int k = 0; k < i; ++k) {
+        y[i] -= lower_(i, k) * y[k];
+      }
+    }
+    return y;
+  }
+
+  Matrix6d lower_;  // below the diagonal
+  Vector6d pivots_, inverse_pivots_;
   double smallest_pivot_ = 0.0;
 };
 

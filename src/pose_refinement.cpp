@@ -37,13 +37,9 @@ std::optional<Matrix6d> inverseOf(const Matrix6d& information) {
   detail::Cholesky6 cholesky;
   cholesky.compute(scaled);
   if (cholesky.smallestPivot() > 0.0) {
-    Matrix6d inverse;
-    for (int k = 0; k < 6; ++k) {
-      inverse.col(k) = cholesky.solve(Eigen::Matrix<double, 6, 1>::Unit(k));
-    }
+    const Matrix6d inverse = cholesky.inverse();
     if (scaled.norm() * inverse.norm() < 1e8) {
-      const Matrix6d symmetric = 0.5 * (inverse + inverse.transpose());
-      return scale.asDiagonal() * symmetric * scale.asDiagonal();
+      return scale.asDiagonal() * inverse * scale.asDiagonal();
     }
   }
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
@@ -69,7 +65,8 @@ int nextRound(int round, bool settled, const PoseRefinementOptions& options) {
 PoseRefinementResult stopped(PoseRefinementResult result, Termination why,
                              const std::string& account) {
   result.termination = why;
-  result.message = std::string(toString(why)) + ": " + account;
+  result.message.reserve(64);
+  result.message.append(toString(why)).append(": ").append(account);
   return result;
 }
 

@@ -35,10 +35,10 @@ PointBlock unusedBlock() {
 }  // namespace
 
 void CollapsedPoints::linearise(Linearisation& at, CollapseVariant variant) const {
-  const Eigen::Isometry3d pose = toIsometry(at.pose);
+  const Eigen::Map<const Eigen::Quaterniond> rotation(at.pose.data());  // a unit quaternion
   at.squared_residuals.resize(blocks.size() * kBlock);
-  at.system =
-      collapse(blocks, model, variant, pose.linear(), pose.translation(), at.squared_residuals);
+  at.system = collapse(blocks, model, variant, rotation.toRotationMatrix(), at.pose.tail<3>(),
+                       at.squared_residuals);
 }
 
 void CollapsedPoseProblem::assign(const PoseObservations& observations, const PinholeCamera& camera,
@@ -217,8 +217,7 @@ SolverOutcome CollapsedPoseProblem::solve(bool robust) {
   outcome.iterations = descent.iterations;
   outcome.usable = current_.pose.allFinite();
   outcome.converged = descent.stop != nullptr;
-  outcome.message =
-      outcome.converged ? std::string(descent.stop) + " reached" : "max_iterations reached";
+  outcome.message = outcome.converged ? descent.stop : "max_iterations reached";
   return outcome;
 }
 

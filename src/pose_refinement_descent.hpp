@@ -37,7 +37,7 @@ struct Descent {
 
   Eigen::Matrix<double, 6, 1> current_steps = Eigen::Matrix<double, 6, 1>::Zero();
   int iterations = 0;
-  const char* stop = nullptr;  ///< The tolerance that was met.
+  const char* stop = nullptr;  ///< Which tolerance was met, in words.
 };
 
 class DescentFunction {
@@ -61,9 +61,9 @@ class DescentFunction {
       const CollapsedSystem& system = d.current->system;
       r = squareRootOf(system, j);
       if (system.gradient.lpNorm<Eigen::Infinity>() < d.options->gradient_tolerance) {
-        d.stop = "gradient_tolerance";
+        d.stop = "gradient_tolerance reached";
       } else if (r.head<6>().squaredNorm() <= d.options->function_tolerance * system.cost) {
-        d.stop = "function_tolerance";  // it is all that a step can gain
+        d.stop = "function_tolerance reached";  // it is all that a step can gain
       }
     }
     if (d.stop != nullptr) {
@@ -95,7 +95,7 @@ class DescentFunction {
     const double cost = d.current->system.cost;
     const double new_cost = d.candidate->system.cost;
     if (std::abs(cost - new_cost) <= d.options->function_tolerance * cost) {
-      d.stop = "function_tolerance";
+      d.stop = "function_tolerance reached";
       // At the minimum the last bits decide which cost is lower. The step is taken all the same:
       // which pose is returned must not depend on them.
       constexpr double kRounding = 1e-12;
@@ -135,7 +135,7 @@ inline void descend(Descent& descent) {
   solver.Solve(function, &steps);
   if (descent.stop == nullptr &&
       solver.summary.status == DescentSolver::RELATIVE_STEP_SIZE_TOO_SMALL) {
-    descent.stop = "parameter_tolerance";
+    descent.stop = "parameter_tolerance reached";
   }
 }
 

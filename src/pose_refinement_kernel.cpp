@@ -31,7 +31,10 @@ struct TranslationSums {
   Lanes h03, h04, h05, h13, h14, h15, h23, h24, h33, h35, h44, h45, h55;
 };
 struct RotationSums {
-  Lanes h00, h01, h02, h11, h12, h22, g0, g1, g2, g3, g4, g5;
+  Lanes h00, h01, h02, h11, h12, h22;
+};
+struct GradientSums {
+  Lanes g0, g1, g2, g3, g4, g5;
 };
 struct CostSums {
   Lanes cost, behind;
@@ -39,15 +42,33 @@ struct CostSums {
 struct Sums {
   TranslationSums t;
   RotationSums r;
+  GradientSums g;
   CostSums c;
   Lanes h25_third;
 };
 
-/// A pose and a camera, in scalars that the compiler can keep in registers.
+Lanes spread(double value) { return Lanes{} + value; }
+
+/// A pose and a camera, spread over the lanes once.
 struct View {
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-  double fx, fy, baseline_fx, nearest;
+  View(const ProjectionModel& model, const Eigen::Matrix3d& rotation,
+       const Eigen::Vector3d& translation)
+      : fx(spread(model.camera.fx)),
+        fy(spread(model.camera.fy)),
+        square_fx(fx * fx),
+        square_fy(fy * fy),
+        baseline_fx(spread(model.baseline_fx)),
+        nearest(spread(model.min_depth)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      r[i] = {spread(rotation(row, 0)), spread(rotation(row, 1)), spread(rotation(row, 2))};
+      t[i] = spread(translation(row));
+    }
+  }
+
+  std::array<std::array<Lanes, 3>, 3> r;
+  std::array<Lanes, 3> t;
+  Lanes fx, fy, square_fx, square_fy, baseline_fx, nearest;
 };
 
 // The helpers below must become part of the loop that calls them, or the sums leave the registers.
@@ -57,20 +78,20 @@ struct View {
 template <DepthRow kRow, bool kHuber, bool kSwitch>
 HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const View& view,
                              Linearised& linearised, double* squared_residuals, CostSums& sums) {
-  const Eigen::Matrix3d& r = view.rotation;
-  const Eigen::Vector3d& t = view.translation;
+  const auto& r = view.r;
+  const auto& t = view.t;
   const Lanes wx = loadLanes(&block.x[first]);
   const Lanes wy = loadLanes(&block.y[first]);
   const Lanes wz = loadLanes(&block.z[first]);
   const Lanes weight = loadLanes(&block.weight[first]);
   const Lanes information = loadLanes(&block.information[first]);
-  const Lanes px = r(0, 0) * wx + r(0, 1) * wy + r(0, 2) * wz + t[0];
-  const Lanes py = r(1, 0) * wx + r(1, 1) * wy + r(1, 2) * wz + t[1];
-  const Lanes unbounded = r(2, 0) * wx + r(2, 1) * wy + r(2, 2) * wz + t[2];
+  const Lanes px = r[0][0] * wx + r[0][1] * wy + r[0][2] * wz + t[0];
+  const Lanes py = r[1][0] * wx + r[1][1] * wy + r[1][2] * wz + t[1];
+  const Lanes unbounded = r[2][0] * wx + r[2][1] * wy + r[2][2] * wz + t[2];
   // Behind the camera the formulas stay finite, too, and `missing` is positive.
-  const Lanes pz = larger(unbounded, Lanes{} + view.nearest);
+  const Lanes pz = larger(unbounded, view.nearest);
   const Lanes missing = pz - unbounded;
-  sums.behind += weight * missing;
+  sums.behind += smaller(weight, missing);
 
   const Lanes inverse_z = 1.0 / pz;
   const Lanes x = px * inverse_z;
@@ -87,8 +108,9 @@ HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const V
   if constexpr (kRow != DepthRow::kNone) {
     s += loadLanes(&block.third_information[first]) * third * third;
   }
-  constexpr double kLiftAbove = 1e300;  // the smallest `missing` there is becomes > kBehindCamera
-  storeLanes(smaller(s, Lanes{} + kBehindCamera) + kLiftAbove * missing, squared_residuals);
+  storeLanes(missing > 0.0 ? spread(std::numeric_limits<double>::infinity())
+                           : smaller(s, spread(kBehindCamera)),
+             squared_residuals);
 
   // Both losses without a branch. Huber: rho = min(s, d^2) + 2 d (q - d), rho' = d / q with
   // q = max(sqrt(s), d). Geman-McClure: rho = share s, rho' = share^2, share = kappa / (kappa + s).
@@ -112,8 +134,8 @@ HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const V
   linearised.x = x;
   linearised.y = y;
   linearised.inverse_z = inverse_z;
-  linearised.factor_u = pixel_factor * (view.fx * view.fx);
-  linearised.factor_v = pixel_factor * (view.fy * view.fy);
+  linearised.factor_u = pixel_factor * view.square_fx;
+  linearised.factor_v = pixel_factor * view.square_fy;
   linearised.residual_u = pixel_factor * view.fx * du;
   linearised.residual_v = pixel_factor * view.fy * dv;
   if constexpr (kRow != DepthRow::kNone) {
@@ -131,41 +153,46 @@ HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const V
 // The rows of dh/d(omega, v), each divided by its focal length:
 //   u: (-x y,        1 + x^2, -y, 1/z, 0,   -x/z)
 //   v: (-(1 + y^2),  x y,      x, 0,   1/z, -y/z)
-// Their weighted products share most of their factors, which the next two functions make use of.
+// Their weighted products share most of their factors, which the next function makes use of: it is
+// bound by the multiplications.
 
-HMCDYN_INLINE void addTranslationPart(const Linearised& a, TranslationSums& sums) {
-  const Lanes u = a.factor_u * a.inverse_z;
-  const Lanes v = a.factor_v * a.inverse_z;
-  const Lanes ux = u * a.x;
-  const Lanes vy = v * a.y;
-  const Lanes both = ux * a.x + vy * a.y;
-  sums.h33 += u * a.inverse_z;
-  sums.h44 += v * a.inverse_z;
-  sums.h35 -= ux * a.inverse_z;
-  sums.h45 -= vy * a.inverse_z;
-  sums.h55 += both * a.inverse_z;
-  sums.h03 -= ux * a.y;
-  sums.h13 += u + ux * a.x;
-  sums.h23 -= u * a.y;
-  sums.h04 -= v + vy * a.y;
-  sums.h14 += vy * a.x;
-  sums.h24 += v * a.x;
-  sums.h05 += (both + v) * a.y;
-  sums.h15 -= (both + u) * a.x;
+HMCDYN_INLINE void addPixelRows(const Linearised& a, TranslationSums& t, RotationSums& r) {
+  const Lanes ux = a.factor_u * a.x;
+  const Lanes uy = a.factor_u * a.y;
+  const Lanes vx = a.factor_v * a.x;
+  const Lanes vy = a.factor_v * a.y;
+  const Lanes uxx = ux * a.x;
+  const Lanes vyy = vy * a.y;
+  const Lanes u1xx = a.factor_u + uxx;
+  const Lanes v1yy = a.factor_v + vyy;
+  const Lanes uxy = ux * a.y;
+  const Lanes vxy = vy * a.x;
+  const Lanes by_y = (uxx + v1yy) * a.y;
+  const Lanes by_x = (u1xx + vyy) * a.x;
+  const Lanes square = a.inverse_z * a.inverse_z;
+  t.h33 += a.factor_u * square;
+  t.h44 += a.factor_v * square;
+  t.h35 -= ux * square;
+  t.h45 -= vy * square;
+  t.h55 += (uxx + vyy) * square;
+  t.h03 -= uxy * a.inverse_z;
+  t.h13 += u1xx * a.inverse_z;
+  t.h23 -= uy * a.inverse_z;
+  t.h04 -= v1yy * a.inverse_z;
+  t.h14 += vxy * a.inverse_z;
+  t.h24 += vx * a.inverse_z;
+  t.h05 += by_y * a.inverse_z;
+  t.h15 -= by_x * a.inverse_z;
+  r.h00 += by_y * a.y + v1yy;
+  r.h01 -= by_y * a.x + uxy;
+  r.h02 += uxy * a.y - v1yy * a.x;
+  r.h11 += by_x * a.x + u1xx;
+  r.h12 -= u1xx * a.y - vxy * a.x;
+  r.h22 += uy * a.y + vx * a.x;
 }
 
-HMCDYN_INLINE void addRotationPartAndGradient(const Linearised& a, RotationSums& sums) {
-  const Lanes ux = a.factor_u * a.x;
-  const Lanes vy = a.factor_v * a.y;
-  const Lanes both = ux * a.x + vy * a.y;
-  const Lanes difference = ux * a.y - vy * a.x;
-  sums.h00 += (both * a.y + 2.0 * vy) * a.y + a.factor_v;
-  sums.h11 += (both * a.x + 2.0 * ux) * a.x + a.factor_u;
-  sums.h01 -= (both + a.factor_u + a.factor_v) * (a.x * a.y);
-  sums.h02 += difference * a.y - a.factor_v * a.x;
-  sums.h12 -= difference * a.x + a.factor_u * a.y;
-  sums.h22 += a.factor_u * (a.y * a.y) + a.factor_v * (a.x * a.x);
-  // dh^T e; e = z - h turns the sign in the end.
+/// dh^T e; e = z - h turns the sign in the end.
+HMCDYN_INLINE void addPixelGradient(const Linearised& a, GradientSums& sums) {
   const Lanes along = a.x * a.residual_u + a.y * a.residual_v;
   sums.g0 -= a.y * along + a.residual_v;
   sums.g1 += a.x * along + a.residual_u;
@@ -185,13 +212,13 @@ HMCDYN_INLINE void addDepthRow(const Linearised& a, Sums& sums) {
   sums.t.h05 += my;
   sums.t.h15 -= mx;
   sums.t.h55 += a.factor_third;
-  sums.r.g0 += a.residual_third * a.third_y;
-  sums.r.g1 -= a.residual_third * a.third_x;
-  sums.r.g5 += a.residual_third;
+  sums.g.g0 += a.residual_third * a.third_y;
+  sums.g.g1 -= a.residual_third * a.third_x;
+  sums.g.g5 += a.residual_third;
 }
 
 /// With dh_3/dp = (fx, 0, w) / z the row of disparity is (w y, fx - w x, -fx y, fx/z, 0, w/z).
-HMCDYN_INLINE void addDisparityRow(const Linearised& a, double fx, Sums& sums) {
+HMCDYN_INLINE void addDisparityRow(const Linearised& a, const Lanes& fx, Sums& sums) {
   const Lanes j0 = a.third_z * a.y;
   const Lanes j1 = fx - a.third_z * a.x;
   const Lanes j2 = -fx * a.y;
@@ -216,16 +243,17 @@ HMCDYN_INLINE void addDisparityRow(const Linearised& a, double fx, Sums& sums) {
   sums.t.h33 += m3 * j3;
   sums.t.h35 += m3 * j5;
   sums.t.h55 += a.factor_third * j5 * j5;
-  sums.r.g0 += a.residual_third * j0;
-  sums.r.g1 += a.residual_third * j1;
-  sums.r.g2 += a.residual_third * j2;
-  sums.r.g3 += a.residual_third * j3;
-  sums.r.g5 += a.residual_third * j5;
+  sums.g.g0 += a.residual_third * j0;
+  sums.g.g1 += a.residual_third * j1;
+  sums.g.g2 += a.residual_third * j2;
+  sums.g.g3 += a.residual_third * j3;
+  sums.g.g5 += a.residual_third * j5;
 }
 
 CollapsedSystem systemOf(const Sums& sums) {
   const TranslationSums& t = sums.t;
   const RotationSums& r = sums.r;
+  const GradientSums& g = sums.g;
   Eigen::Matrix<double, 6, 6> h;
   h.row(0) << total(r.h00), total(r.h01), total(r.h02), total(t.h03), total(t.h04), total(t.h05);
   h.row(1) << 0.0, total(r.h11), total(r.h12), total(t.h13), total(t.h14), total(t.h15);
@@ -236,8 +264,8 @@ CollapsedSystem systemOf(const Sums& sums) {
   h(2, 5) = total(sums.h25_third) - h(0, 3) - h(1, 4);
   CollapsedSystem system;
   system.normal = h.selfadjointView<Eigen::Upper>();
-  system.gradient << -total(r.g0), -total(r.g1), -total(r.g2), -total(r.g3), -total(r.g4),
-      -total(r.g5);
+  system.gradient << -total(g.g0), -total(g.g1), -total(g.g2), -total(g.g3), -total(g.g4),
+      -total(g.g5);
   // The diagonal bounds the other entries.
   const bool feasible = total(sums.c.behind) == 0.0 && system.normal.diagonal().allFinite() &&
                         system.gradient.allFinite();
@@ -263,15 +291,17 @@ CollapsedSystem collapseAll(const std::vector<PointBlock>& blocks, const View& v
     }
     sums.c = cost;
     TranslationSums translation = sums.t;
-    for (std::size_t i = 0; i < count; ++i) {
-      addTranslationPart(chunk[i], translation);
-    }
-    sums.t = translation;
     RotationSums rotation = sums.r;
     for (std::size_t i = 0; i < count; ++i) {
-      addRotationPartAndGradient(chunk[i], rotation);
+      addPixelRows(chunk[i], translation, rotation);
     }
+    sums.t = translation;
     sums.r = rotation;
+    GradientSums gradient = sums.g;
+    for (std::size_t i = 0; i < count; ++i) {
+      addPixelGradient(chunk[i], gradient);
+    }
+    sums.g = gradient;
     for (std::size_t i = 0; i < count && kRow != DepthRow::kNone; ++i) {
       if constexpr (kRow == DepthRow::kDepth) {
         addDepthRow(chunk[i], sums);
@@ -300,8 +330,7 @@ CollapsedSystem collapse(const std::vector<PointBlock>& blocks, const Projection
                          CollapseVariant variant, const Eigen::Matrix3d& rotation,
                          const Eigen::Vector3d& translation,
                          std::vector<double>& squared_residuals) {
-  const View view{rotation,        translation,       model.camera.fx,
-                  model.camera.fy, model.baseline_fx, model.min_depth};
+  const View view(model, rotation, translation);
   switch (variant.depth_row) {
     case DepthRow::kDepth:
       return collapseRows<DepthRow::kDepth>(blocks, view, variant, squared_residuals.data());

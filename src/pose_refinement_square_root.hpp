@@ -30,8 +30,7 @@ inline Eigen::Matrix<double, 7, 1> squareRootOf(const CollapsedSystem& system,
   Cholesky6 cholesky;
   cholesky.compute(system.normal);
   if (cholesky.smallestPivot() > kSmallestPivot) {
-    jacobian.topRows<6>().triangularView<Eigen::Upper>() = cholesky.lower().transpose();
-    residuals.head<6>() = cholesky.solveLower(system.gradient);
+    residuals.head<6>() = cholesky.squareRoot(system.gradient, jacobian);
   } else {
     const Vector6d diagonal = system.normal.diagonal();
     const Vector6d scale =
@@ -39,7 +38,8 @@ inline Eigen::Matrix<double, 7, 1> squareRootOf(const CollapsedSystem& system,
     const Matrix6d scaled = scale.asDiagonal() * system.normal * scale.asDiagonal();
     const Eigen::LDLT<Matrix6d> pivoted(scaled);
     const Vector6d pivots = pivoted.vectorD();
-    const Matrix6d upper = Matrix6d(pivoted.matrixU()) * pivoted.transpositionsP();
+    const Matrix6d permutation = pivoted.transpositionsP() * Matrix6d::Identity();
+    const Matrix6d upper = pivoted.matrixU() * permutation;
     Vector6d y = pivoted.transpositionsP() * scale.cwiseProduct(system.gradient);
     pivoted.matrixL().solveInPlace(y);
     for (int k = 0; k < 6; ++k) {

@@ -40,8 +40,8 @@ enum class WeightMode : std::uint8_t {
 /// Who minimises. Both find the same minimum, and both leave the trust region to Ceres; they differ
 /// in time and, in the last digits that the tolerances leave open, in the result.
 enum class PoseSolver : std::uint8_t {
-  kCollapsed,     ///< ceres::TinySolver on seven residuals a linearisation, into which one
-                  ///< vectorised pass over the points collapses the rest: some tens of times faster.
+  kCollapsed,  ///< ceres::TinySolver on seven residuals a linearisation, into which one
+               ///< vectorised pass over the points collapses the rest: some tens of times faster.
   kCeresProblem,  ///< ceres::Solver on one residual block a point: the yardstick.
 };
 
