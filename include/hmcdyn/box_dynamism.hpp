@@ -78,14 +78,17 @@ inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const Detec
   reuse.offsets.clear();
   reuse.indices.clear();
   reuse.offsets.push_back(0);
-  const std::size_t in_blocks = points.size() / detail::kBlock * detail::kBlock;
+  constexpr std::size_t kStep = 2 * detail::kBlock;
+  const std::size_t in_steps = points.size() / kStep * kStep;
   for (const DetectionBox& box : boxes) {
-    for (std::size_t i = 0; i < in_blocks; i += detail::kBlock) {
-      for (std::uint32_t rest = detail::pointsInBox(points, i, box); rest != 0; rest &= rest - 1) {
+    for (std::size_t i = 0; i < in_steps; i += kStep) {
+      const std::uint64_t high = detail::pointsInBox(points, i + detail::kBlock, box);
+      std::uint64_t rest = detail::pointsInBox(points, i, box) | (high << detail::kBlock);
+      for (; rest != 0; rest &= rest - 1) {
         reuse.indices.push_back(static_cast<std::uint32_t>(i) + detail::lowestOne(rest));
       }
     }
-    for (std::size_t i = in_blocks; i < points.size(); ++i) {
+    for (std::size_t i = in_steps; i < points.size(); ++i) {
       if (box.contains(points.u[i], points.v[i])) {
         reuse.indices.push_back(static_cast<std::uint32_t>(i));
       }
@@ -154,10 +157,9 @@ inline BoxDynamism testBoxes(Span<const float> distance, Span<const DetectionBox
       reuse.threshold[i] = std::min(reuse.threshold[i], threshold);
     }
   }
+  const float outside = options.distance_threshold;
   for (float& threshold : reuse.threshold) {
-    if (threshold == kInNoBox) {
-      threshold = options.distance_threshold;
-    }
+    threshold = threshold < kInNoBox ? threshold : outside;
   }
   reuse.boxes.clear();
   for (std::size_t b = 0; b < boxes.size(); ++b) {

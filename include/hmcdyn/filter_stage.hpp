@@ -213,13 +213,13 @@ inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<co
                              const FilterStageOptions& options, FilterStageWorkspace& workspace) {
   FilterStageResult& result = workspace.result;
   const Span<const std::uint32_t> members = workspace.membership.pointsIn(b);
-  workspace.box_depth.clear();
-  workspace.box_distance.clear();
-  workspace.box_threshold.clear();
-  for (const std::uint32_t i : members) {
-    workspace.box_depth.push_back(points.depth[i]);
-    workspace.box_distance.push_back(distance[i]);
-    workspace.box_threshold.push_back(workspace.dynamism.threshold[i]);
+  workspace.box_depth.resize(members.size());
+  workspace.box_distance.resize(members.size());
+  workspace.box_threshold.resize(members.size());
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    workspace.box_depth[k] = points.depth[members[k]];
+    workspace.box_distance[k] = distance[members[k]];
+    workspace.box_threshold[k] = workspace.dynamism.threshold[members[k]];
   }
 
   const Clustering& clustering = clusterBox(workspace.box_depth, workspace.box_distance,
@@ -296,12 +296,23 @@ inline const std::vector<std::uint8_t>& peerFlags(const KeyPointsView& points,
 }
 
 inline void countLabels(const FilterStageWorkspace& workspace, FrameDecision& frame) {
+  // Counters of the loop's own, in 32 bits, so that it vectorises.
+  std::uint32_t in_dynamic_boxes = 0;
+  std::uint32_t dynamic = 0;
+  std::uint32_t suspect = 0;
+  std::uint32_t unmatched = 0;
+  const PointLabel* const label = workspace.result.label.data();
+  const std::uint8_t* const in_dynamic_box = workspace.in_dynamic_box.data();
   for (std::size_t i = 0; i < workspace.result.label.size(); ++i) {
-    frame.points_in_dynamic_boxes += workspace.in_dynamic_box[i];
-    frame.dynamic += workspace.result.label[i] == PointLabel::kDynamic ? 1 : 0;
-    frame.suspect += workspace.result.label[i] == PointLabel::kSuspect ? 1 : 0;
-    frame.unmatched += workspace.result.label[i] == PointLabel::kUnmatched ? 1 : 0;
+    in_dynamic_boxes += in_dynamic_box[i];
+    dynamic += label[i] == PointLabel::kDynamic ? 1U : 0U;
+    suspect += label[i] == PointLabel::kSuspect ? 1U : 0U;
+    unmatched += label[i] == PointLabel::kUnmatched ? 1U : 0U;
   }
+  frame.points_in_dynamic_boxes = in_dynamic_boxes;
+  frame.dynamic = dynamic;
+  frame.suspect = suspect;
+  frame.unmatched = unmatched;
 }
 
 }  // namespace detail
