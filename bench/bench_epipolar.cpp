@@ -54,7 +54,7 @@ void vectorised(benchmark::State& state) {
     benchmark::DoNotOptimize(distance.data());
   }
 }
-BENCHMARK(vectorised);
+BENCHMARK(vectorised)->Name("epipolar/1000/hmcdyn");
 
 void scalarLoop(benchmark::State& state) {
   const std::vector<Input> inputs = makeInputs();
@@ -74,6 +74,6 @@ void scalarLoop(benchmark::State& state) {
     benchmark::DoNotOptimize(distance.data());
   }
 }
-BENCHMARK(scalarLoop);
+BENCHMARK(scalarLoop)->Name("epipolar/1000/scalar_loop");
 
 }  // namespace

@@ -19,15 +19,18 @@ struct Point2 {
 /// Keeps its memory from call to call; the tree's dimension is fixed at compile time.
 class NanoflannDbscan {
  public:
+  /// @param sorted whether searches sort what they find, as is nanoflann's default.
+  explicit NanoflannDbscan(bool sorted = false) : sorted_(sorted) {}
+
   /// Labels 0 .. clusters - 1, -1 = noise; valid until the next call.
   const std::vector<int>& cluster(const std::vector<Point2>& points, float epsilon,
                                   int min_points) {
     const Cloud cloud{&points};
     const Tree tree(2, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
     const float squared_radius = epsilon * epsilon;
-    const nanoflann::SearchParams unsorted(0, 0.0f, false);
+    const nanoflann::SearchParams parameters(0, 0.0f, sorted_);
     const auto neighboursOf = [&](std::size_t i) {
-      return tree.radiusSearch(&points[i].x, squared_radius, matches_, unsorted);
+      return tree.radiusSearch(&points[i].x, squared_radius, matches_, parameters);
     };
     label_.assign(points.size(), kUnseen);
     int clusters = 0;
@@ -83,6 +86,7 @@ class NanoflannDbscan {
     }
   }
 
+  bool sorted_;
   std::vector<int> label_;
   std::vector<std::uint32_t> queue_;
   std::vector<std::pair<std::uint32_t, float>> matches_;

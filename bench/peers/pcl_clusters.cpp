@@ -23,7 +23,7 @@ PclCloud::~PclCloud() = default;
 PclCloud::PclCloud(PclCloud&& other) noexcept = default;
 PclCloud& PclCloud::operator=(PclCloud&& other) noexcept = default;
 
-std::size_t PclCloud::cluster(double tolerance, int min_size) const {
+std::vector<int> PclCloud::cluster(double tolerance, int min_size) const {
   const pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>(false));
   tree->setInputCloud(implementation_->cloud);
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
@@ -33,7 +33,13 @@ std::size_t PclCloud::cluster(double tolerance, int min_size) const {
   extraction.setInputCloud(implementation_->cloud);
   std::vector<pcl::PointIndices> clusters;
   extraction.extract(clusters);
-  return clusters.size();
+  std::vector<int> labels(implementation_->cloud->size(), -1);
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    for (const auto i : clusters[k].indices) {
+      labels[static_cast<std::size_t>(i)] = static_cast<int>(k);
+    }
+  }
+  return labels;
 }
 
 }  // namespace hmcdyn::bench

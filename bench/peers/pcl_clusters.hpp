@@ -19,8 +19,8 @@ class PclCloud {
   PclCloud& operator=(const PclCloud&) = delete;
 
   /// EuclideanClusterExtraction over PCL's kd-tree, which it builds first: single linkage, not
-  /// density clusters, but what its users take. The number of clusters of at least `min_size`.
-  std::size_t cluster(double tolerance, int min_size) const;
+  /// density clusters, but what its users take. Labels; -1 in clusters of fewer than `min_size`.
+  std::vector<int> cluster(double tolerance, int min_size) const;
 
  private:
   struct Implementation;

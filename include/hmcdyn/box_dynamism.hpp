@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <hmcdyn/detail/bits.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
@@ -50,6 +51,25 @@ struct BoxMembership {
   }
 };
 
+namespace detail {
+
+/// Which of the points first .. first + 31 the box holds.
+inline std::uint32_t pointsInBox(const KeyPointsView& points, std::size_t first,
+                                 const DetectionBox& box) noexcept {
+  const float* const u = points.u.data() + first;
+  const float* const v = points.v.data() + first;
+  std::uint32_t bits = 0;
+  for (std::uint32_t i = 0; i < kBlock; ++i) {
+    // Not box.contains(): without shortcuts, the loop vectorises.
+    const bool columns = (u[i] >= box.x_min) & (u[i] <= box.x_max);
+    const bool rows = (v[i] >= box.y_min) & (v[i] <= box.y_max);
+    bits |= (columns & rows) ? kBits.bit[i] : 0;
+  }
+  return bits;
+}
+
+}  // namespace detail
+
 /// @param reuse a result whose memory is taken over.
 /// @throws std::invalid_argument when the points' arrays differ in size.
 inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const DetectionBox> boxes,
@@ -58,8 +78,17 @@ inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const Detec
   reuse.offsets.clear();
   reuse.indices.clear();
   reuse.offsets.push_back(0);
+  constexpr std::size_t kStep = 2 * detail::kBlock;
+  const std::size_t in_steps = points.size() / kStep * kStep;
   for (const DetectionBox& box : boxes) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < in_steps; i += kStep) {
+      const std::uint64_t high = detail::pointsInBox(points, i + detail::kBlock, box);
+      std::uint64_t rest = detail::pointsInBox(points, i, box) | (high << detail::kBlock);
+      for (; rest != 0; rest &= rest - 1) {
+        reuse.indices.push_back(static_cast<std::uint32_t>(i) + detail::lowestOne(rest));
+      }
+    }
+    for (std::size_t i = in_steps; i < points.size(); ++i) {
       if (box.contains(points.u[i], points.v[i])) {
         reuse.indices.push_back(static_cast<std::uint32_t>(i));
       }
@@ -74,10 +103,13 @@ namespace detail {
 /// @throws std::invalid_argument when a box holds a point beyond the first `points`.
 inline void checkMembership(const char* caller, const BoxMembership& membership,
                             std::size_t points) {
-  const auto largest = std::max_element(membership.indices.begin(), membership.indices.end());
-  if (largest != membership.indices.end() && *largest >= points) {
+  std::uint32_t largest = 0;
+  for (const std::uint32_t index : membership.indices) {
+    largest = std::max(largest, index);
+  }
+  if (!membership.indices.empty() && largest >= points) {
     throw std::invalid_argument(std::string(caller) + ": membership holds point " +
-                                std::to_string(*largest) + ", but there are " +
+                                std::to_string(largest) + ", but there are " +
                                 std::to_string(points) +
                                 " points; expected the membership of these points");
   }
@@ -125,10 +157,9 @@ inline BoxDynamism testBoxes(Span<const float> distance, Span<const DetectionBox
       reuse.threshold[i] = std::min(reuse.threshold[i], threshold);
     }
   }
+  const float outside = options.distance_threshold;
   for (float& threshold : reuse.threshold) {
-    if (threshold == kInNoBox) {
-      threshold = options.distance_threshold;
-    }
+    threshold = threshold < kInNoBox ? threshold : outside;
   }
   reuse.boxes.clear();
   for (std::size_t b = 0; b < boxes.size(); ++b) {

@@ -195,9 +195,14 @@ inline ClusterFilterResult filterClusters(Span<const float> depth, Span<const fl
         label != kNoise &&
         clusters[static_cast<std::size_t>(label)].verdict != ClusterVerdict::kStatic;
     const bool swept = distance[i] > threshold[i];  // (d); false without a distance
-    const bool placed = options.place_unmatched_by_depth && std::isnan(distance[i]) &&
-                        hasDepth(depth[i]) && detail::withinDynamicDepth(clusters, depth[i]);
-    reuse.is_dynamic[i] = in_dynamic_cluster || swept || placed ? 1 : 0;
+    bool placed = false;
+    if (std::isnan(distance[i])) {
+      placed = options.place_unmatched_by_depth && hasDepth(depth[i]) &&
+               detail::withinDynamicDepth(clusters, depth[i]);
+    }
+    // No shortcuts: which of them applies is as good as random.
+    reuse.is_dynamic[i] = static_cast<std::uint8_t>(in_dynamic_cluster) |
+                          static_cast<std::uint8_t>(swept) | static_cast<std::uint8_t>(placed);
   }
   return reuse;
 }

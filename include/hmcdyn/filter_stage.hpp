@@ -2,8 +2,11 @@
 // Steps 4 to 7 in one call: arrays in, labels and weights out.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -115,7 +118,11 @@ struct FilterStageWorkspace {
   FilterStageResult result;
   BoxMembership membership;
   BoxDynamism dynamism;
+  ClusteringWorkspace clustering;
   ClusterFilterResult cluster_filter;
+  std::vector<BoxDecision> spare_boxes;  ///< Those of frames with more boxes, for their memory.
+  std::vector<std::uint8_t> peer_flags;
+  DepthRansacWorkspace depth_ransac;
   std::vector<float> box_depth;
   std::vector<float> box_distance;
   std::vector<float> box_threshold;
@@ -124,39 +131,80 @@ struct FilterStageWorkspace {
 
 namespace detail {
 
+/// Sum and count of some values, taken in kLanes sums, which vectorises.
+struct LanedSum {
+  std::array<double, kLanes> sum{};
+  std::array<std::uint32_t, kLanes> count{};
+
+  void add(std::size_t lane, double value, bool counts) noexcept {
+    sum[lane] += counts ? value : 0.0;
+    count[lane] += counts ? 1U : 0U;
+  }
+  double total() const noexcept { return std::accumulate(sum.begin(), sum.end(), 0.0); }
+  std::size_t number() const noexcept {
+    return std::accumulate(count.begin(), count.end(), std::size_t{0});
+  }
+};
+
+/// Adds `value(i)` for 0 <= i < n where `counts(i)`.
+template <class Value, class Counts>
+LanedSum sumOf(std::size_t n, Value&& value, Counts&& counts) {
+  LanedSum result;
+  const std::size_t in_lanes = n / kLanes * kLanes;
+  for (std::size_t i = 0; i < in_lanes; i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      result.add(lane, value(i + lane), counts(i + lane));
+    }
+  }
+  for (std::size_t i = in_lanes; i < n; ++i) {
+    result.add(i - in_lanes, value(i), counts(i));
+  }
+  return result;
+}
+
 /// Standard deviation of the depths that are there; 0 without any.
 inline float depthDeviation(Span<const float> depth) {
-  double sum = 0.0;
-  double sum_of_squares = 0.0;
-  std::size_t n = 0;
-  for (const float z : depth) {
-    if (hasDepth(z)) {
-      sum += z;
-      ++n;
-    }
-  }
-  if (n == 0) {
+  const auto usable = [depth](std::size_t i) {
+    return (depth[i] > 0.0f) & (depth[i] <= std::numeric_limits<float>::max());
+  };
+  const LanedSum sum = sumOf(
+      depth.size(), [depth](std::size_t i) { return static_cast<double>(depth[i]); }, usable);
+  if (sum.number() == 0) {
     return 0.0f;
   }
-  const double mean = sum / static_cast<double>(n);
-  for (const float z : depth) {
-    if (hasDepth(z)) {
-      sum_of_squares += (z - mean) * (z - mean);
-    }
-  }
-  return static_cast<float>(std::sqrt(sum_of_squares / static_cast<double>(n)));
+  const double n = static_cast<double>(sum.number());
+  const double mean = sum.total() / n;
+  const auto square = [depth, mean](std::size_t i) {
+    const double difference = static_cast<double>(depth[i]) - mean;
+    return difference * difference;
+  };
+  return static_cast<float>(std::sqrt(sumOf(depth.size(), square, usable).total() / n));
 }
 
 inline float meanDistance(Span<const float> distance, std::size_t& measured) {
-  double sum = 0.0;
-  measured = 0;
-  for (const float d : distance) {
-    if (!std::isnan(d)) {
-      sum += d;
-      ++measured;
-    }
+  const LanedSum sum = sumOf(
+      distance.size(), [distance](std::size_t i) { return static_cast<double>(distance[i]); },
+      [distance](std::size_t i) { return distance[i] == distance[i]; });
+  measured = sum.number();
+  return measured == 0 ? 0.0f : static_cast<float>(sum.total() / static_cast<double>(measured));
+}
+
+/// Brings `boxes` to size n with every decision reset, whose memory is kept.
+inline void resetDecisions(std::size_t n, std::vector<BoxDecision>& boxes,
+                           std::vector<BoxDecision>& spare) {
+  for (; boxes.size() > n; boxes.pop_back()) {
+    spare.push_back(std::move(boxes.back()));
   }
-  return measured == 0 ? 0.0f : static_cast<float>(sum / static_cast<double>(measured));
+  for (; boxes.size() < n && !spare.empty(); spare.pop_back()) {
+    boxes.push_back(std::move(spare.back()));
+  }
+  boxes.resize(n);
+  for (BoxDecision& box : boxes) {
+    std::vector<ClusterSummary> clusters = std::move(box.clusters);
+    clusters.clear();
+    box = BoxDecision{};
+    box.clusters = std::move(clusters);
+  }
 }
 
 /// Steps 5 to 7 on dynamic box `b`. A point in several dynamic boxes keeps the strictest verdict:
@@ -165,24 +213,24 @@ inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<co
                              const FilterStageOptions& options, FilterStageWorkspace& workspace) {
   FilterStageResult& result = workspace.result;
   const Span<const std::uint32_t> members = workspace.membership.pointsIn(b);
-  workspace.box_depth.clear();
-  workspace.box_distance.clear();
-  workspace.box_threshold.clear();
-  for (const std::uint32_t i : members) {
-    workspace.box_depth.push_back(points.depth[i]);
-    workspace.box_distance.push_back(distance[i]);
-    workspace.box_threshold.push_back(workspace.dynamism.threshold[i]);
+  workspace.box_depth.resize(members.size());
+  workspace.box_distance.resize(members.size());
+  workspace.box_threshold.resize(members.size());
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    workspace.box_depth[k] = points.depth[members[k]];
+    workspace.box_distance[k] = distance[members[k]];
+    workspace.box_threshold[k] = workspace.dynamism.threshold[members[k]];
   }
 
-  const Clustering clustering =
-      clusterBox(workspace.box_depth, workspace.box_distance, options.clustering);  // step 5
+  const Clustering& clustering = clusterBox(workspace.box_depth, workspace.box_distance,
+                                            options.clustering, workspace.clustering);  // step 5
   ClusterFilterResult& filtered = workspace.cluster_filter;
   filtered = filterClusters(workspace.box_depth, workspace.box_distance, workspace.box_threshold,
                             clustering, result.frame.mean_distance, options.cluster_filter,
                             std::move(filtered));  // step 6
 
   BoxDecision& decision = result.boxes[b];
-  decision.clusters = filtered.clusters;
+  decision.clusters.assign(filtered.clusters.begin(), filtered.clusters.end());
   decision.strongest = filtered.strongest;
   decision.anchor.sigma = depthDeviation(workspace.box_depth);
   if (filtered.strongest != kNoise) {
@@ -195,10 +243,11 @@ inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<co
     workspace.in_dynamic_box[i] = 1;
     const PointLabel before = result.label[i];
     PointLabel label = std::isnan(distance[i]) ? PointLabel::kUnmatched : PointLabel::kSuspect;
-    float weight = keptPointWeight(points.depth[i], decision.anchor, options.weights);  // step 7
+    float weight = 0.0f;
     if (filtered.is_dynamic[k] != 0) {
       label = PointLabel::kDynamic;
-      weight = 0.0f;
+    } else {
+      weight = keptPointWeight(points.depth[i], decision.anchor, options.weights);  // step 7
     }
     result.weight[i] = std::min(result.weight[i], weight);
     if (before != PointLabel::kDynamic) {
@@ -213,37 +262,57 @@ inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<co
 }
 
 /// The peers' rules know two verdicts only.
-inline std::vector<std::uint8_t> peerFlags(const KeyPointsView& points, Span<const float> distance,
-                                           Span<const DetectionBox> boxes,
-                                           const FilterStageOptions& options,
-                                           const FilterStageWorkspace& workspace) {
+inline const std::vector<std::uint8_t>& peerFlags(const KeyPointsView& points,
+                                                  Span<const float> distance,
+                                                  Span<const DetectionBox> boxes,
+                                                  const FilterStageOptions& options,
+                                                  FilterStageWorkspace& workspace) {
+  std::vector<std::uint8_t>& flags = workspace.peer_flags;
   switch (options.rule) {
     case FilterRule::kBox:
-      return dropWholeBoxes(points.size(), workspace.membership);
+      flags = dropWholeBoxes(points.size(), workspace.membership, std::move(flags));
+      return flags;
     case FilterRule::kEpipolar:
-      return dropBeyondThreshold(distance, workspace.membership, workspace.dynamism);
+      flags =
+          dropBeyondThreshold(distance, workspace.membership, workspace.dynamism, std::move(flags));
+      return flags;
     case FilterRule::kTwoThreshold:
-      return dropByTwoThresholds(distance, boxes, workspace.membership,
-                                 options.boxes.person_class_id, options.two_threshold);
+      flags =
+          dropByTwoThresholds(distance, boxes, workspace.membership, options.boxes.person_class_id,
+                              options.two_threshold, std::move(flags));
+      return flags;
     case FilterRule::kChiSquare:
-      return dropByChiSquare(distance, workspace.membership, options.chi_square);
+      flags = dropByChiSquare(distance, workspace.membership, options.chi_square, std::move(flags));
+      return flags;
     case FilterRule::kDepthRansac:
-      return dropByDepthRansac(points.depth, workspace.membership, options.depth_ransac);
+      return dropByDepthRansac(points.depth, workspace.membership, options.depth_ransac,
+                               workspace.depth_ransac);
     case FilterRule::kNone:
     case FilterRule::kHmc:
       break;
   }
-  std::vector<std::uint8_t> nothing_dynamic(points.size(), 0);
-  return nothing_dynamic;
+  flags.assign(points.size(), 0);
+  return flags;
 }
 
 inline void countLabels(const FilterStageWorkspace& workspace, FrameDecision& frame) {
+  // Counters of the loop's own, in 32 bits, so that it vectorises.
+  std::uint32_t in_dynamic_boxes = 0;
+  std::uint32_t dynamic = 0;
+  std::uint32_t suspect = 0;
+  std::uint32_t unmatched = 0;
+  const PointLabel* const label = workspace.result.label.data();
+  const std::uint8_t* const in_dynamic_box = workspace.in_dynamic_box.data();
   for (std::size_t i = 0; i < workspace.result.label.size(); ++i) {
-    frame.points_in_dynamic_boxes += workspace.in_dynamic_box[i];
-    frame.dynamic += workspace.result.label[i] == PointLabel::kDynamic ? 1 : 0;
-    frame.suspect += workspace.result.label[i] == PointLabel::kSuspect ? 1 : 0;
-    frame.unmatched += workspace.result.label[i] == PointLabel::kUnmatched ? 1 : 0;
+    in_dynamic_boxes += in_dynamic_box[i];
+    dynamic += label[i] == PointLabel::kDynamic ? 1U : 0U;
+    suspect += label[i] == PointLabel::kSuspect ? 1U : 0U;
+    unmatched += label[i] == PointLabel::kUnmatched ? 1U : 0U;
   }
+  frame.points_in_dynamic_boxes = in_dynamic_boxes;
+  frame.dynamic = dynamic;
+  frame.suspect = suspect;
+  frame.unmatched = unmatched;
 }
 
 }  // namespace detail
@@ -279,7 +348,7 @@ inline const FilterStageResult& filterKeyPoints(const KeyPointsView& points,
   result.label.assign(points.size(), PointLabel::kStatic);
   result.weight.assign(points.size(), 1.0f);
   result.cluster.assign(points.size(), kNoise);
-  result.boxes.resize(boxes.size());
+  detail::resetDecisions(boxes.size(), result.boxes, workspace.spare_boxes);
   result.frame = FrameDecision{};
   FrameDecision& frame = result.frame;
   frame.points = points.size();
@@ -294,7 +363,6 @@ inline const FilterStageResult& filterKeyPoints(const KeyPointsView& points,
   int clusters = 0;
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     BoxDecision& decision = result.boxes[b];
-    decision = BoxDecision{};
     decision.verdict = workspace.dynamism.boxes[b];
     decision.first_cluster = clusters;
     if (!decision.verdict.is_dynamic) {
@@ -311,7 +379,7 @@ inline const FilterStageResult& filterKeyPoints(const KeyPointsView& points,
     }
   }
   if (options.rule != FilterRule::kHmc && options.rule != FilterRule::kNone) {
-    const std::vector<std::uint8_t> dynamic =
+    const std::vector<std::uint8_t>& dynamic =
         detail::peerFlags(points, distance, boxes, options, workspace);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (dynamic[i] != 0) {

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hmcdyn/box_dynamism.hpp>
@@ -83,12 +85,15 @@ inline void checkOptions(const DepthRansacOptions& options) {
                         static_cast<float>(options.max_iterations), "a count >= 1");
 }
 
+// The rules take over the memory of `reuse` for their result.
+
 /// Flags (1 = dynamic): every point of every box (the paper's RS ablation).
 /// @throws std::invalid_argument when a box holds a point beyond `points`.
-inline std::vector<std::uint8_t> dropWholeBoxes(std::size_t points,
-                                                const BoxMembership& membership) {
+inline std::vector<std::uint8_t> dropWholeBoxes(std::size_t points, const BoxMembership& membership,
+                                                std::vector<std::uint8_t> reuse = {}) {
   detail::checkMembership("dropWholeBoxes", membership, points);
-  std::vector<std::uint8_t> dynamic(points, 0);
+  std::vector<std::uint8_t> dynamic = std::move(reuse);
+  dynamic.assign(points, 0);
   for (const std::uint32_t i : membership.indices) {
     dynamic[i] = 1;
   }
@@ -99,7 +104,8 @@ inline std::vector<std::uint8_t> dropWholeBoxes(std::size_t points,
 /// @throws std::invalid_argument when sizes differ.
 inline std::vector<std::uint8_t> dropBeyondThreshold(Span<const float> distance,
                                                      const BoxMembership& membership,
-                                                     const BoxDynamism& dynamism) {
+                                                     const BoxDynamism& dynamism,
+                                                     std::vector<std::uint8_t> reuse = {}) {
   if (dynamism.boxes.size() != membership.boxes() || dynamism.threshold.size() != distance.size()) {
     throw std::invalid_argument("dropBeyondThreshold: " + std::to_string(distance.size()) +
                                 " distances in " + std::to_string(membership.boxes()) +
@@ -108,7 +114,8 @@ inline std::vector<std::uint8_t> dropBeyondThreshold(Span<const float> distance,
                                 std::to_string(dynamism.boxes.size()) + " boxes");
   }
   detail::checkMembership("dropBeyondThreshold", membership, distance.size());
-  std::vector<std::uint8_t> dynamic(distance.size(), 0);
+  std::vector<std::uint8_t> dynamic = std::move(reuse);
+  dynamic.assign(distance.size(), 0);
   for (std::size_t b = 0; b < membership.boxes(); ++b) {
     if (!dynamism.boxes[b].is_dynamic) {
       continue;
@@ -128,7 +135,8 @@ inline std::vector<std::uint8_t> dropByTwoThresholds(Span<const float> distance,
                                                      Span<const DetectionBox> boxes,
                                                      const BoxMembership& membership,
                                                      int person_class_id,
-                                                     const TwoThresholdOptions& options = {}) {
+                                                     const TwoThresholdOptions& options = {},
+                                                     std::vector<std::uint8_t> reuse = {}) {
   checkOptions(options);
   if (membership.boxes() != boxes.size()) {
     throw std::invalid_argument("dropByTwoThresholds: membership of " +
@@ -136,7 +144,9 @@ inline std::vector<std::uint8_t> dropByTwoThresholds(Span<const float> distance,
                                 std::to_string(boxes.size()) + " boxes");
   }
   detail::checkMembership("dropByTwoThresholds", membership, distance.size());
-  std::vector<std::uint8_t> in_person(distance.size(), 0);
+  std::vector<std::uint8_t> dynamic = std::move(reuse);
+  dynamic.assign(distance.size(), 0);
+  std::vector<std::uint8_t>& in_person = dynamic;  // until its verdict replaces it
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     if (boxes[b].class_id == person_class_id) {
       for (const std::uint32_t i : membership.pointsIn(b)) {
@@ -144,7 +154,6 @@ inline std::vector<std::uint8_t> dropByTwoThresholds(Span<const float> distance,
       }
     }
   }
-  std::vector<std::uint8_t> dynamic(distance.size(), 0);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < distance.size(); ++i) {
     const float threshold =
@@ -162,10 +171,12 @@ inline std::vector<std::uint8_t> dropByTwoThresholds(Span<const float> distance,
 /// @throws std::invalid_argument when sizes differ or an option is out of range.
 inline std::vector<std::uint8_t> dropByChiSquare(Span<const float> distance,
                                                  const BoxMembership& membership,
-                                                 const ChiSquareOptions& options = {}) {
+                                                 const ChiSquareOptions& options = {},
+                                                 std::vector<std::uint8_t> reuse = {}) {
   checkOptions(options);
   detail::checkMembership("dropByChiSquare", membership, distance.size());
-  std::vector<std::uint8_t> dynamic(distance.size(), 0);
+  std::vector<std::uint8_t> dynamic = std::move(reuse);
+  dynamic.assign(distance.size(), 0);
   for (const std::uint32_t i : membership.indices) {
     const float normalized = distance[i] / options.sigma;
     dynamic[i] = normalized * normalized > options.quantile ? 1 : 0;
@@ -173,33 +184,51 @@ inline std::vector<std::uint8_t> dropByChiSquare(Span<const float> distance,
   return dynamic;
 }
 
+/// Memory that dropByDepthRansac reuses, with its last result.
+struct DepthRansacWorkspace {
+  std::vector<std::uint8_t> dynamic;
+  std::vector<float> depth;            ///< Of a box's points that have one.
+  std::vector<std::uint32_t> indices;  ///< Of the same points.
+};
+
 namespace detail {
 
-/// The largest set of depths that keep the variance of (two drawn depths, itself) below the
-/// threshold; positions in `depth`.
-inline std::vector<std::size_t> depthConsensus(const std::vector<float>& depth,
+/// Two drawn depths of a box.
+struct DepthPair {
+  float a = 0.0f;
+  float b = 0.0f;
+
+  /// Whether the variance of both and a third stays below the threshold; YOLO-SLAM eq. 5.
+  bool agreesWith(float depth, float variance_threshold) const {
+    const float mean = (a + b + depth) / 3.0f;
+    const float variance =
+        ((a - mean) * (a - mean) + (b - mean) * (b - mean) + (depth - mean) * (depth - mean)) /
+        3.0f;
+    return variance < variance_threshold;
+  }
+};
+
+/// The pair with which most depths agree; none where no depth agrees with any pair.
+inline std::optional<DepthPair> depthConsensus(const std::vector<float>& depth,
                                                const DepthRansacOptions& options,
                                                std::mt19937& random) {
-  std::vector<std::size_t> best;
+  std::optional<DepthPair> best;
+  std::size_t most = 0;
   const std::size_t n = depth.size();
   double wanted = options.max_iterations;
   for (int iteration = 0; iteration < options.max_iterations && iteration < wanted; ++iteration) {
     // Not std::uniform_int_distribution, whose draws differ between standard libraries.
     const float a = depth[random() % n];
     const float b = depth[random() % n];
-    std::vector<std::size_t> inliers;
-    for (std::size_t i = 0; i < n; ++i) {
-      const float mean = (a + b + depth[i]) / 3.0f;
-      const float variance = ((a - mean) * (a - mean) + (b - mean) * (b - mean) +
-                              (depth[i] - mean) * (depth[i] - mean)) /
-                             3.0f;  // YOLO-SLAM eq. 5
-      if (variance < options.variance_threshold) {
-        inliers.push_back(i);
-      }
+    const DepthPair pair{a, b};
+    std::size_t inliers = 0;
+    for (const float z : depth) {
+      inliers += pair.agreesWith(z, options.variance_threshold) ? 1 : 0;
     }
-    if (inliers.size() > best.size()) {
-      best = std::move(inliers);
-      const double share = static_cast<double>(best.size()) / static_cast<double>(n);
+    if (inliers > most) {
+      most = inliers;
+      best = pair;
+      const double share = static_cast<double>(most) / static_cast<double>(n);
       const double miss = 1.0 - share * share;
       wanted = miss <= 0.0 ? 0.0
                            : std::log(1.0 - static_cast<double>(options.confidence)) /
@@ -213,31 +242,45 @@ inline std::vector<std::size_t> depthConsensus(const std::vector<float>& depth,
 
 /// Flags: in every box, the largest set of points of like depth (DepthRansacOptions). Points
 /// without depth are kept.
+/// @param workspace keeps the memory and the result; valid until the next call with it.
 /// @throws std::invalid_argument when sizes differ or an option is out of range.
-inline std::vector<std::uint8_t> dropByDepthRansac(Span<const float> depth,
-                                                   const BoxMembership& membership,
-                                                   const DepthRansacOptions& options = {}) {
+inline const std::vector<std::uint8_t>& dropByDepthRansac(Span<const float> depth,
+                                                          const BoxMembership& membership,
+                                                          const DepthRansacOptions& options,
+                                                          DepthRansacWorkspace& workspace) {
   checkOptions(options);
   detail::checkMembership("dropByDepthRansac", membership, depth.size());
   std::mt19937 random(options.seed);
-  std::vector<std::uint8_t> dynamic(depth.size(), 0);
+  workspace.dynamic.assign(depth.size(), 0);
   for (std::size_t b = 0; b < membership.boxes(); ++b) {
-    std::vector<float> depths;
-    std::vector<std::uint32_t> indices;
+    workspace.depth.clear();
+    workspace.indices.clear();
     for (const std::uint32_t i : membership.pointsIn(b)) {
       if (hasDepth(depth[i])) {
-        depths.push_back(depth[i]);
-        indices.push_back(i);
+        workspace.depth.push_back(depth[i]);
+        workspace.indices.push_back(i);
       }
     }
-    if (depths.size() < 3) {
+    if (workspace.depth.size() < 3) {
       continue;
     }
-    for (const std::size_t inlier : detail::depthConsensus(depths, options, random)) {
-      dynamic[indices[inlier]] = 1;
+    const auto best = detail::depthConsensus(workspace.depth, options, random);
+    for (const std::uint32_t i : workspace.indices) {
+      if (best && best->agreesWith(depth[i], options.variance_threshold)) {
+        workspace.dynamic[i] = 1;
+      }
     }
   }
-  return dynamic;
+  return workspace.dynamic;
+}
+
+/// The same without a workspace.
+inline std::vector<std::uint8_t> dropByDepthRansac(Span<const float> depth,
+                                                   const BoxMembership& membership,
+                                                   const DepthRansacOptions& options = {}) {
+  DepthRansacWorkspace workspace;
+  dropByDepthRansac(depth, membership, options, workspace);
+  return std::move(workspace.dynamic);
 }
 
 }  // namespace hmcdyn

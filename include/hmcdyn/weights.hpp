@@ -43,8 +43,8 @@ inline float depthSimilarity(float depth, const DepthAnchor& anchor) noexcept {
   if (!(anchor.sigma > 0.0f)) {
     return difference == 0.0 ? 1.0f : 0.0f;
   }
-  const double ratio = difference / static_cast<double>(anchor.sigma);
-  return static_cast<float>(std::exp(-0.5 * ratio * ratio));  // eq. 8
+  const auto ratio = static_cast<float>(difference / static_cast<double>(anchor.sigma));
+  return std::exp(-0.5f * ratio * ratio);  // eq. 8
 }
 
 /// lambda of eq. 7 for a point that was kept in a dynamic box, in [0, 1], never NaN.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What C++20 has in <bit>.
+// Sets of points as words of bits, and what C++20 has in <bit>.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,20 @@
 #endif
 
 namespace hmcdyn::detail {
+
+/// Points handled as one word of bits.
+inline constexpr std::size_t kBlock = 32;
+
+/// Bit i at index i: loops over it vectorise where shifts by the index do not.
+struct BitTable {
+  std::array<std::uint32_t, kBlock> bit{};
+  constexpr BitTable() {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      bit[i] = std::uint32_t{1} << i;
+    }
+  }
+};
+inline constexpr BitTable kBits;
 
 /// Number of ones. Compilers know the pattern and use the processor's instruction where there is
 /// one.

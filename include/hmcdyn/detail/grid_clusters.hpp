@@ -215,25 +215,59 @@ class GridClusters {
     for (int row = -2; row <= 2; ++row) {
       near[static_cast<std::size_t>(row + 2)] = window(cell, row, -2, 2);
     }
+    const std::uint32_t only = onlyClusterIn(near);
     for (std::uint32_t i = core_end_[cell]; i < grid_.begin[cell + 1]; ++i) {
-      NearestCore nearest(disc_.squaredRadius());
-      for (const Interval cells : near) {
-        for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
-          offerCores(i, other, nearest);
-        }
+      int label = kNoise;
+      if (only == kSeveral) {
+        label = labelOfNearest(i, near);
+      } else if (only != kNone && reachesCore(i, near)) {
+        label = workspace_.number[only];
       }
-      result.label[grid_.point[i]] =
-          nearest.found ? workspace_.number[sets_.find(nearest.index)] : kNoise;
+      result.label[grid_.point[i]] = label;
       result.is_core[grid_.point[i]] = 0;
     }
   }
 
-  void offerCores(std::uint32_t i, std::uint32_t cell, NearestCore& nearest) const {
-    const Interval cores = coresOf(cell);
-    for (std::uint32_t j = cores.begin; j < cores.end; ++j) {
-      nearest.offer(disc_.power(grid_.x[j] - grid_.x[i], grid_.y[j] - grid_.y[i]), grid_.x[j],
-                    grid_.y[j], cell);
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::uint32_t kSeveral = kNone - 1;
+
+  /// The cluster (by root) of all the core points in these cells, kNone, or kSeveral.
+  std::uint32_t onlyClusterIn(const std::array<Interval, 5>& near) {
+    std::uint32_t only = kNone;
+    for (const Interval cells : near) {
+      for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
+        if (coresOf(other).size() > 0) {
+          const std::uint32_t root = sets_.find(other);
+          only = only == kNone || only == root ? root : kSeveral;
+        }
+      }
     }
+    return only;
+  }
+
+  bool reachesCore(std::uint32_t i, const std::array<Interval, 5>& near) const {
+    for (const Interval cells : near) {
+      for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
+        if (connected({i, i + 1}, coresOf(other))) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  int labelOfNearest(std::uint32_t i, const std::array<Interval, 5>& near) {
+    NearestCore nearest(disc_.squaredRadius());
+    for (const Interval cells : near) {
+      for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
+        const Interval cores = coresOf(other);
+        for (std::uint32_t j = cores.begin; j < cores.end; ++j) {
+          nearest.offer(disc_.power(grid_.x[j] - grid_.x[i], grid_.y[j] - grid_.y[i]), grid_.x[j],
+                        grid_.y[j], other);
+        }
+      }
+    }
+    return nearest.found ? workspace_.number[sets_.find(nearest.index)] : kNoise;
   }
 
   Disc disc_;

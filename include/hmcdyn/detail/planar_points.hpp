@@ -2,7 +2,6 @@
 // Points in the plane as the fast clustering backends take them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -11,15 +10,13 @@
 #include <immintrin.h>
 #endif
 
+#include <hmcdyn/detail/bits.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn::detail {
 
 /// Points handled at a time: inner loops of this fixed length are vectorised even at -O2.
 inline constexpr std::size_t kLanes = 8;
-
-/// Points handled as one word of bits.
-inline constexpr std::size_t kBlock = 32;
 
 /// N points, structure of arrays. A point with a coordinate that is not finite has both NaN, and so
 /// is nobody's neighbour; such points follow the last one up to a multiple of kBlock.
@@ -39,17 +36,6 @@ struct PlanarPoints {
     }
   }
 };
-
-/// Bit i at index i: loops over it vectorise where shifts by the index do not.
-struct BitTable {
-  std::array<std::uint32_t, kBlock> bit{};
-  constexpr BitTable() {
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      bit[i] = std::uint32_t{1} << i;
-    }
-  }
-};
-inline constexpr BitTable kBits;
 
 /// The neighbourhood of eq. 6 for p = 2 in the plane; agrees with MinkowskiBall to the last bit.
 class Disc {
