@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/optimization/pose_graph_cost.hpp"
+
+#include <cmath>
+
+#include "slam/optimization/se3_manifold.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// d Log(Exp(omega) R) / d omega at omega = 0, for Log(R) = phi: the inverse of SO(3)'s left
+/// Jacobian (Sola, Deray and Atchuthan, A micro Lie theory, 2018).
+Eigen::Matrix3d inverseLeftJacobian(const Eigen::Vector3d& phi) {
+  const double angle = phi.norm();
+  const Eigen::Matrix3d cross = skew(phi);
+  // 1 / a^2 - cot(a / 2) / (2 a), by its limit where the difference would lose digits.
+  const double factor = angle < 1e-4
+                            ? 1.0 / 12.0
+                            : 1.0 / (angle * angle) - 1.0 / (2.0 * angle * std::tan(0.5 * angle));
+  return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
+}
+
+}  // namespace
+
+PoseGraphCost::PoseGraphCost(const Eigen::Isometry3d& to_from, const Matrix6d& square_root)
+    : from_to_(to_from.inverse()), square_root_(square_root) {
+  set_num_residuals(6);
+  *mutable_parameter_block_sizes() = {kPoseSize, kPoseSize};
+}
+
+bool PoseGraphCost::Evaluate(double const* const* parameters, double* residuals,
+                             double** jacobians) const {
+  const Eigen::Isometry3d from = toIsometry(Eigen::Map<const PoseVector>(parameters[0]));
+  const Eigen::Isometry3d to = toIsometry(Eigen::Map<const PoseVector>(parameters[1]));
+  const Eigen::Isometry3d between = to * from.inverse();
+  const Eigen::Isometry3d error = between * from_to_;
+  Vector6d d;
+  d << logarithm(Eigen::Quaterniond(error.linear())), error.translation();
+  Eigen::Map<Vector6d>{residuals} = square_root_ * d;
+  if (jacobians == nullptr) {
+    return true;
+  }
+  Matrix6d by_to = Matrix6d::Zero();
+  by_to.topLeftCorner<3, 3>() = inverseLeftJacobian(d.head<3>());
+  by_to.bottomLeftCorner<3, 3>() = -skew(error.translation());
+  by_to.bottomRightCorner<3, 3>().setIdentity();
+  by_to = square_root_ * by_to.eval();
+  using RowMajorJacobian = Eigen::Matrix<double, 6, kPoseSize, Eigen::RowMajor>;
+  if (jacobians[0] != nullptr) {
+    // A motion of `from` is its opposite of `to`, told in that frame.
+    Matrix6d carried = Matrix6d::Zero();
+    carried.topLeftCorner<3, 3>() = -between.linear();
+    carried.bottomLeftCorner<3, 3>() = -skew(between.translation()) * between.linear();
+    carried.bottomRightCorner<3, 3>() = -between.linear();
+    Eigen::Map<RowMajorJacobian>{jacobians[0]} << by_to * carried, Vector6d::Zero();
+  }
+  if (jacobians[1] != nullptr) {
+    Eigen::Map<RowMajorJacobian>{jacobians[1]} << by_to, Vector6d::Zero();
+  }
+  return true;
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The residual of one edge of a pose graph and its derivatives.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <ceres/cost_function.h>
+
+#include "slam/optimization/pose_graph.hpp"
+
+namespace hmcdyn::slam {
+
+/// S d with S^T S = information, d = (Log R, t) of T_to T_from^-1 to_from^-1; blocks: from, to.
+class PoseGraphCost final : public ceres::CostFunction {
+ public:
+  /// @param square_root S.
+  PoseGraphCost(const Eigen::Isometry3d& to_from, const Eigen::Matrix<double, 6, 6>& square_root);
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  Eigen::Isometry3d from_to_;
+  Eigen::Matrix<double, 6, 6> square_root_;
+};
+
+}  // namespace hmcdyn::slam
