@@ -311,7 +311,7 @@ std::string renderReport(const ReportInput& input) {
   html += tableSection("Counts", objectAt(input.summary, "counts"), false) +
           tableSection("Options", objectAt(input.summary, "options"), false) +
           tableSection("Versions", objectAt(input.summary, "versions"), true);
-  html += "</main>\n<footer><details><summary>Charts: uPlot, MIT licence</summary><p>" +
+  html += "</main>\n<footer><details><summary>Charts: uPlot 1.6.32, MIT licence</summary><p>" +
           escapeHtml(std::string(assets::uplotLicence())) + "</p></details></footer>\n";
   html += "<script id=\"status\" type=\"application/json\"></script>\n";
   html += "<script id=\"data\" type=\"application/json\">" + scriptJson(data) + "</script>\n";

@@ -137,7 +137,7 @@
       width: Math.max(200, box.clientWidth), height: height(),
       cursor: { sync: { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
       scales: { x: { time: false, range: (u, a, b) => (a === null || a === b ? wholeRange() : [a, b]) }, y: more.yScale || {} },
-      axes: [axis(xName), axis(yName, Object.assign({ size: 58 }, more.yAxis))],
+      axes: [axis(xName, { size: 34 }), axis(yName, Object.assign({ size: 58 }, more.yAxis))],
       series: [{ label: xName, value: (u, v) => number(v, data.x_is_frame ? 0 : 2) }].concat(series.map((s) => ({
         label: s.name, stroke: () => colour(s.colour), width: s.width === undefined ? 1.5 : s.width,
         fill: s.fill ? () => colour(s.colour) : undefined, paths: s.paths,
@@ -269,7 +269,7 @@
       cursor: { drag: { x: true, y: true, setScale: false }, points: { show: false },
         bind: { dblclick: (u) => () => { whole(u); return null; } } },
       scales: { x: { time: false, auto: false, range: (u, lo, hi) => [lo, hi] }, y: { auto: false, range: (u, lo, hi) => [lo, hi] } },
-      axes: [axis(names[0] + " (m)"), axis(names[1] + " (m)", { size: 54 })],
+      axes: [axis(names[0] + " (m)", { size: 34 }), axis(names[1] + " (m)", { size: 54 })],
       series: [{}, { facets: [{ scale: "x", auto: false }, { scale: "y", auto: false }], label: "camera",
         paths: (u) => { drawTrajectory(u, a, b, truth); return null; } }],
       hooks: merge(inkHooks(entry), {
@@ -315,7 +315,8 @@
     view("chart-front", [name[0], upName], [0, up], [1, sign]);
     view("chart-side", [top, upName], [forward, up], [1, sign]);
     if (data.error) {
-      timeChart("chart-error", "error (m)", [{ name: "error (m)", values: data.error, colour: "--accent", digits: 4 }],
+      const mm = data.error.map((v) => (finite(v) ? 1000 * v : null));
+      timeChart("chart-error", "error (mm)", [{ name: "error (mm)", values: mm, colour: "--accent", digits: 1 }],
         { hooks: { drawAxes: [drawLost] }, yScale: { range: (u, a, b) => [0, b > 0 ? b * 1.08 : 1] } });
     }
     stacked("chart-stages", "ms", data.stages.map((s, k) => ({ name: s.name, values: s.ms, colour: stagePalette[k % stagePalette.length] })), 1);
