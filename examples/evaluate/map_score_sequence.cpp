@@ -42,7 +42,8 @@ Calibration readCalibration(const std::filesystem::path& file) {
 }
 
 cv::Mat readImage(const std::filesystem::path& file, int type) {
-  cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat image =
+      std::filesystem::exists(file) ? cv::imread(file.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
   if (image.type() != type || image.empty()) {
     throw std::runtime_error(file.string() + ": is missing, or no PNG of the expected type");
   }

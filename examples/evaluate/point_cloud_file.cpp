@@ -50,6 +50,7 @@ void readFormat(const std::filesystem::path& file, std::istringstream& fields, H
 
 Header readHeader(std::istream& stream, const std::filesystem::path& file) {
   Header header;
+  bool has_format = false;
   std::string line;
   if (!std::getline(stream, line) || line.substr(0, 3) != "ply") {
     fail(file, "is no PLY file");
@@ -61,9 +62,13 @@ Header readHeader(std::istream& stream, const std::filesystem::path& file) {
     std::string word;
     fields >> word;
     if (word == "end_header") {
+      if (!has_format) {
+        fail(file, "its PLY header names no format");
+      }
       return header;
     }
     if (word == "format") {
+      has_format = true;
       readFormat(file, fields, header);
     } else if (word == "element") {
       std::string name;
@@ -127,7 +132,11 @@ Eigen::Vector3f readVertex(std::istream& stream, const Header& header,
     if (header.is_ascii) {
       std::string word;  // streams do not read "nan"
       stream >> word;
-      value = std::strtof(word.c_str(), nullptr);
+      char* end = nullptr;
+      value = std::strtof(word.c_str(), &end);
+      if (*end != '\0') {
+        stream.setstate(std::ios::failbit);
+      }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (coordinate[axis] == i) {
@@ -160,8 +169,8 @@ std::vector<Eigen::Vector3f> readPlyPositions(const std::filesystem::path& file)
   for (std::size_t i = 0; i < header.vertices; ++i) {
     const Eigen::Vector3f position = readVertex(stream, header, coordinate, buffer);
     if (!stream) {
-      fail(file, "cut off after " + std::to_string(i) + " of " + std::to_string(header.vertices) +
-                     " vertices");
+      fail(file, "cut off or malformed after " + std::to_string(i) + " of " +
+                     std::to_string(header.vertices) + " vertices");
     }
     if (position.allFinite()) {
       positions.push_back(position);

@@ -57,7 +57,12 @@ TEST_F(PlyFile, NamesWhatIsWrong) {
                 .find("no float or double 'x'"),
             std::string::npos);
   EXPECT_NE(messageFor("ply\nformat ascii 1.0\nelement vertex 3\n" + xyz + "1 2 3\n4 5")
-                .find("cut off after 1 of 3 vertices"),
+                .find("cut off or malformed after 1 of 3 vertices"),
+            std::string::npos);
+  EXPECT_NE(messageFor("ply\nformat ascii 1.0\nelement vertex 1\n" + xyz + "1 2 three\n")
+                .find("malformed after 0 of 1 vertices"),
+            std::string::npos);
+  EXPECT_NE(messageFor("ply\nelement vertex 1\n" + xyz + "1 2 3\n").find("names no format"),
             std::string::npos);
   EXPECT_THROW(readPlyPositions(path("nowhere.ply")), std::runtime_error);
 }
