@@ -11,7 +11,7 @@ Installs the packages that hmcdyn needs to be built and tested (Debian, Ubuntu).
 all are installed. Needs root or sudo; without either it says what to install and fails.
 
   --check   only list what is missing; exit code 1 when something is
-  --ci      also what .ci/run needs: clang-format and clang-tidy
+  --ci      also what .ci/run needs: clang-format, clang-tidy, and Chromium to open the report in
   --help    this text
 USAGE
 }
@@ -29,7 +29,7 @@ only_check=false
 for argument in "$@"; do
   case "$argument" in
     --check) only_check=true ;;
-    --ci) packages+=(clang-format clang-tidy) ;;
+    --ci) packages+=(clang-format clang-tidy chromium) ;;
     --help | -h) usage && exit 0 ;;
     *)
       echo "${0##*/}: unknown argument $argument" >&2

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/dense/static_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+namespace hmcdyn::slam {
+namespace {
+
+constexpr float kMillimetres = 1000.0f;
+constexpr float kLargestDepth = 32.0f;
+
+void checkOptions(const StaticDepthOptions& options) {
+  if (options.stride < 1 || !(options.min_depth > 0.0f) ||
+      !(options.max_depth > options.min_depth && options.max_depth <= kLargestDepth) ||
+      !(options.box_margin >= 0.0f) || !(options.point_radius >= 0.0f) ||
+      !(options.edge_share > 0.0f)) {
+    throw std::invalid_argument(fmt::format(
+        "dense map: stride {}, depths {} to {} m, box margin {} px, point radius {} px, edge share "
+        "{}; expected a stride above 0, 0 < depths <= {} m in order, margin and radius of at least "
+        "0, a share above 0",
+        options.stride, options.min_depth, options.max_depth, options.box_margin,
+        options.point_radius, options.edge_share, kLargestDepth));
+  }
+}
+
+void checkImages(const cv::Mat& bgr, const cv::Mat& depth, const cv::Mat& mask) {
+  if (bgr.empty() || bgr.type() != CV_8UC3 || depth.type() != CV_32FC1 ||
+      depth.size() != bgr.size() ||
+      (!mask.empty() && (mask.type() != CV_8UC1 || mask.size() != bgr.size()))) {
+    throw std::invalid_argument(fmt::format(
+        "dense map: colour {}x{} type {}, depth {}x{} type {}, mask {}x{} type {}; expected one "
+        "size with pixels, CV_8UC3, CV_32FC1, CV_8UC1 or no mask",
+        bgr.cols, bgr.rows, bgr.type(), depth.cols, depth.rows, depth.type(), mask.cols, mask.rows,
+        mask.type()));
+  }
+}
+
+/// Whole pixels that a range covers, within 0..size.
+cv::Range pixels(float low, float high, int size) {
+  const auto limit = static_cast<float>(size);
+  return {static_cast<int>(std::ceil(std::clamp(low, 0.0f, limit))),
+          static_cast<int>(std::floor(std::clamp(high, -1.0f, limit - 1.0f))) + 1};
+}
+
+bool atJump(const cv::Mat& depth, int row, int column, float share) {
+  constexpr int kReach = 2;
+  const float here = depth.at<float>(row, column);
+  for (const auto& [dr, dc] : {std::pair{-kReach, 0}, {kReach, 0}, {0, -kReach}, {0, kReach}}) {
+    const int r = row + dr;
+    const int c = column + dc;
+    if (r < 0 || c < 0 || r >= depth.rows || c >= depth.cols) {
+      continue;
+    }
+    const float there = depth.at<float>(r, c);
+    if (hasDepth(there) && std::abs(there - here) > share * here) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+cv::Mat staticMask(cv::Size size, Span<const DetectionBox> boxes,
+                   Span<const cv::Point2f> dynamic_points, const StaticDepthOptions& options) {
+  checkOptions(options);
+  if (size.width < 1 || size.height < 1) {
+    throw std::invalid_argument(
+        fmt::format("dense map: mask of {}x{}; expected pixels", size.width, size.height));
+  }
+  cv::Mat mask(size, CV_8UC1, cv::Scalar(255));
+  const auto clear = [&](float x_min, float y_min, float x_max, float y_max) {
+    const cv::Range columns = pixels(x_min, x_max, size.width);
+    const cv::Range rows = pixels(y_min, y_max, size.height);
+    if (columns.start < columns.end && rows.start < rows.end) {
+      mask(rows, columns).setTo(0);
+    }
+  };
+  for (const DetectionBox& box : boxes) {
+    if (box.x_min <= box.x_max && box.y_min <= box.y_max) {  // false for a NaN
+      const float m = options.box_margin;
+      clear(box.x_min - m, box.y_min - m, box.x_max + m, box.y_max + m);
+    }
+  }
+  for (const cv::Point2f& point : dynamic_points) {
+    if (std::isfinite(point.x) && std::isfinite(point.y)) {
+      const float r = options.point_radius;
+      clear(point.x - r, point.y - r, point.x + r, point.y + r);
+    }
+  }
+  return mask;
+}
+
+std::vector<DetectionBox> boxesToLeaveOut(Span<const DetectionBox> boxes,
+                                          Span<const std::uint8_t> box_is_dynamic) {
+  if (box_is_dynamic.size() != boxes.size()) {
+    throw std::invalid_argument(fmt::format("dense map: {} boxes, {} verdicts; expected one a box",
+                                            boxes.size(), box_is_dynamic.size()));
+  }
+  std::vector<DetectionBox> left_out;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (boxes[i].class_id == kPersonClassId || box_is_dynamic[i] != 0) {
+      left_out.push_back(boxes[i]);
+    }
+  }
+  return left_out;
+}
+
+ThinnedKeyFrame thinKeyFrame(const cv::Mat& bgr, const cv::Mat& depth, const cv::Mat& mask,
+                             const StaticDepthOptions& options) {
+  checkOptions(options);
+  checkImages(bgr, depth, mask);
+  const int rows = (bgr.rows + options.stride - 1) / options.stride;
+  const int columns = (bgr.cols + options.stride - 1) / options.stride;
+  ThinnedKeyFrame thin;
+  thin.stride = options.stride;
+  thin.depth = cv::Mat(rows, columns, CV_16UC1, cv::Scalar(0));
+  thin.usable = cv::Mat(rows, columns, CV_8UC1, cv::Scalar(0));
+  thin.colour = cv::Mat(rows, columns, CV_8UC3);
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const int row = r * options.stride;
+      const int column = c * options.stride;
+      thin.colour.at<cv::Vec3b>(r, c) = bgr.at<cv::Vec3b>(row, column);
+      const float z = depth.at<float>(row, column);
+      if (!hasDepth(z) || z > kLargestDepth) {
+        continue;
+      }
+      thin.depth.at<std::uint16_t>(r, c) =
+          static_cast<std::uint16_t>(std::lround(z * kMillimetres));
+      const bool in_range = z >= options.min_depth && z <= options.max_depth;
+      if (in_range && (mask.empty() || mask.at<std::uint8_t>(row, column) != 0) &&
+          !atJump(depth, row, column, options.edge_share)) {
+        thin.usable.at<std::uint8_t>(r, c) = 255;
+      }
+    }
+  }
+  return thin;
+}
+
+}  // namespace hmcdyn::slam
