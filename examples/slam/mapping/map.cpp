@@ -152,6 +152,29 @@ std::vector<int> Map::localKeyFrames(const Frame& frame) const {
   return local;
 }
 
+std::vector<int> Map::nearestKeyFrames(const Eigen::Isometry3d& camera_from_world) const {
+  const Eigen::Vector3d centre = camera_from_world.inverse().translation();
+  const Eigen::Vector3d axis = camera_from_world.linear().row(2);
+  constexpr double kSameWay = 0.7;  // cosine
+  std::vector<std::pair<double, int>> by_distance;
+  for (std::size_t k = 0; k < key_frames_.size(); ++k) {
+    const Eigen::Isometry3d& pose = key_frames_[k].frame.camera_from_world;
+    if (!key_frames_[k].removed && axis.dot(pose.linear().row(2)) > kSameWay) {
+      by_distance.emplace_back((pose.inverse().translation() - centre).norm(),
+                               static_cast<int>(k));
+    }
+  }
+  std::sort(by_distance.begin(), by_distance.end());
+  std::vector<int> nearest;
+  for (const auto& [distance, key_frame] : by_distance) {
+    if (nearest.size() >= static_cast<std::size_t>(options_.local_key_frames)) {
+      break;
+    }
+    nearest.push_back(key_frame);
+  }
+  return nearest;
+}
+
 std::vector<int> Map::pointsOf(const std::vector<int>& key_frames) const {
   std::vector<int> local;
   for (const int key_frame : key_frames) {
@@ -260,6 +283,41 @@ Eigen::Isometry3d Map::poseOf(int key_frame) const {
   return from_root * entry->frame.camera_from_world;
 }
 
+void Map::dropObservation(int point, int key_frame) {
+  MapPoint& entry = points_[static_cast<std::size_t>(point)];
+  const auto seen =
+      std::find_if(entry.observations.begin(), entry.observations.end(),
+                   [key_frame](const Observation& o) { return o.key_frame == key_frame; });
+  if (seen != entry.observations.end()) {
+    key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point[seen->key_point] =
+        kNoMapPoint;
+    entry.observations.erase(seen);
+  }
+}
+
+void Map::fusePoints(int point, int into) {
+  MapPoint& gone = points_[static_cast<std::size_t>(point)];
+  MapPoint& kept = points_[static_cast<std::size_t>(into)];
+  if (gone.removed || kept.removed || point == into) {
+    return;
+  }
+  for (const Observation& seen : gone.observations) {
+    const bool both = std::any_of(
+        kept.observations.begin(), kept.observations.end(),
+        [&](const Observation& other) { return other.key_frame == seen.key_frame; });
+    key_frames_[static_cast<std::size_t>(seen.key_frame)].frame.map_point[seen.key_point] =
+        both ? kNoMapPoint : into;
+    if (!both) {
+      kept.observations.push_back(seen);
+    }
+  }
+  kept.last_key_frame = std::max(kept.last_key_frame, gone.last_key_frame);
+  kept.visible += gone.visible;
+  kept.found += gone.found;
+  gone.observations = {};
+  gone.removed = true;
+}
+
 void Map::apply(const MapCorrection& correction) {
   if (correction.key_frames.empty()) {
     return;
@@ -286,15 +344,10 @@ void Map::apply(const MapCorrection& correction) {
     points_[static_cast<std::size_t>(point)].position = position;
   }
   for (const auto& [point, key_frame] : correction.outliers) {
-    MapPoint& entry = points_[static_cast<std::size_t>(point)];
-    const auto seen =
-        std::find_if(entry.observations.begin(), entry.observations.end(),
-                     [key = key_frame](const Observation& o) { return o.key_frame == key; });
-    if (seen != entry.observations.end()) {
-      key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point[seen->key_point] =
-          kNoMapPoint;
-      entry.observations.erase(seen);
-    }
+    dropObservation(point, key_frame);
+  }
+  for (const auto& [point, into] : correction.fused) {
+    fusePoints(point, into);
   }
 }
 

@@ -73,6 +73,7 @@ struct MapCorrection {
   std::vector<std::pair<int, Eigen::Isometry3d>> key_frames;  ///< camera_from_world, by number.
   std::vector<std::pair<int, Eigen::Vector3d>> points;        ///< World (m), by number.
   std::vector<std::pair<int, int>> outliers;  ///< Observations to drop: point, key frame.
+  std::vector<std::pair<int, int>> fused;     ///< Points that are one: this one, and what stays.
 };
 
 /// The sparse map: key frames and the points that they see.
@@ -97,6 +98,10 @@ class Map {
   /// local_key_frames.
   std::vector<int> localKeyFrames(const Frame& frame) const;
 
+  /// Key frames whose camera stood nearest to a pose and looked the same way (within 45 degrees),
+  /// nearest first: at most local_key_frames.
+  std::vector<int> nearestKeyFrames(const Eigen::Isometry3d& camera_from_world) const;
+
   /// Points that these key frames see and that were not removed, in the order of their numbers.
   std::vector<int> pointsOf(const std::vector<int>& key_frames) const;
 
@@ -120,6 +125,8 @@ class Map {
   void cullPoints();
   void cullKeyFrames();
   void removePoint(int point);
+  void dropObservation(int point, int key_frame);
+  void fusePoints(int point, int into);
   void removeKeyFrame(int key_frame);
   double depthInformation(double depth) const;
   std::vector<std::pair<int, int>> sharedPoints(const std::vector<int>& map_points,

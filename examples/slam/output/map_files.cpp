@@ -112,7 +112,7 @@ LoopsWriter::LoopsWriter(const std::filesystem::path& file) : file_(file) {
   file_.append("timestamp,matched_timestamp,score,inliers,verdict\n");
 }
 
-void LoopsWriter::write(const LoopCandidate& candidate) {
+void LoopsWriter::write(const LoopRow& candidate) {
   file_.append(fmt::format(
       "{:.6f},{:.6f},{},{},{}\n", candidate.timestamp, candidate.matched_timestamp,
       std::isnan(candidate.score) ? "nan" : fmt::format("{:.6g}", candidate.score),

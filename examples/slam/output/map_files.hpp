@@ -38,7 +38,7 @@ class KeyFramesWriter {
 };
 
 /// Two key frames that may show the same place.
-struct LoopCandidate {
+struct LoopRow {
   double timestamp = 0.0;          ///< Of the current key frame (s).
   double matched_timestamp = 0.0;  ///< Of the older one (s).
   double score = 0.0;              ///< Likeness, as place recognition scores it; NaN = none.
@@ -53,7 +53,7 @@ class LoopsWriter {
  public:
   explicit LoopsWriter(const std::filesystem::path& file);
 
-  void write(const LoopCandidate& candidate);
+  void write(const LoopRow& candidate);
 
  private:
   AppendFile file_;

@@ -90,7 +90,7 @@ std::optional<std::size_t> findFrame(const std::vector<ReportFrame>& frames, dou
 
 Json acceptedLoops(const ReportInput& input) {
   Json pairs = Json::array();
-  for (const LoopCandidate& loop : input.loops) {
+  for (const LoopRow& loop : input.loops) {
     const auto current = findFrame(input.frames, loop.timestamp);
     const auto matched = findFrame(input.frames, loop.matched_timestamp);
     if (loop.refusal.empty() && current && matched) {

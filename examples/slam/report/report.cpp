@@ -184,12 +184,12 @@ std::string stageTable(const ReportInput& input) {
          htmlTable({"stage", "frames", "mean (ms)", "median (ms)", "p95 (ms)"}, rows) + "</div>\n";
 }
 
-std::string loopSection(const std::vector<LoopCandidate>& loops) {
+std::string loopSection(const std::vector<LoopRow>& loops) {
   if (loops.empty()) {
     return "";
   }
   std::vector<std::vector<std::string>> rows;
-  for (const LoopCandidate& loop : loops) {
+  for (const LoopRow& loop : loops) {
     if (rows.size() == kLoopRows) {
       break;
     }

@@ -48,7 +48,7 @@ struct ReportInput {
   std::string title;                ///< Such as the data set's name.
   std::vector<std::string> stages;  ///< Names of a frame's stages, in order.
   std::vector<ReportFrame> frames;  ///< In order of time; else the charts go by number.
-  std::vector<LoopCandidate> loops;
+  std::vector<LoopRow> loops;
   std::vector<ReportPicture> pictures;  ///< Beyond 8 MB they are left out, and the page says so.
   /// As summary.json has it. Known here: "evaluation" (ate_m, rpe_*), "options", "versions",
   /// "warnings", "counts"; all of it is optional.

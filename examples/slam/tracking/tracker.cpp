@@ -187,7 +187,24 @@ void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search)
   }
 }
 
-TrackingResult Tracker::track(Frame frame) {
+Tracker::Estimate Tracker::findAgain(const Frame& frame, const KeyPointGrid& grid,
+                                     const std::vector<int>& candidates,
+                                     const Relocalize& by_place) const {
+  Estimate found;
+  if (const std::optional<Eigen::Isometry3d> pose = relocalize(frame)) {
+    found = estimate(frame, grid, candidates, *pose, options_.prediction_radius);
+  }
+  if (found.refinement.inliers < options_.min_inliers && by_place) {
+    if (const std::optional<Eigen::Isometry3d> pose = by_place(frame)) {
+      // Perhaps in another part of the map than the last frame.
+      found = estimate(frame, grid, map_.pointsOf(map_.nearestKeyFrames(*pose)), *pose,
+                       options_.wide_radius);
+    }
+  }
+  return found;
+}
+
+TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   if (!last_) {
     return initialize(std::move(frame));
   }
@@ -201,15 +218,16 @@ TrackingResult Tracker::track(Frame frame) {
       coarse = estimate(frame, grid, candidates, last_->camera_from_world, options_.wide_radius);
     }
   }
+  std::vector<int> around = candidates;
   if (coarse.refinement.inliers < options_.min_inliers) {
-    const std::optional<Eigen::Isometry3d> pose = relocalize(frame);
-    if (!pose) {
+    coarse = findAgain(frame, grid, candidates, by_place);
+    if (coarse.refinement.inliers < options_.min_inliers) {
       return lose();
     }
-    coarse = estimate(frame, grid, candidates, *pose, options_.prediction_radius);
+    around = map_.pointsOf(map_.nearestKeyFrames(coarse.refinement.camera_from_world));
   }
 
-  const Estimate fine = estimate(frame, grid, candidates, coarse.refinement.camera_from_world,
+  const Estimate fine = estimate(frame, grid, around, coarse.refinement.camera_from_world,
                                  options_.refined_radius);
   if (!fine.refinement.succeeded() || fine.refinement.inliers < options_.min_inliers) {
     return lose();
@@ -229,6 +247,7 @@ TrackingResult Tracker::track(Frame frame) {
   result.matches = fine.search.matches.size();
   result.inliers = frame.inliers;
   result.camera_from_world = frame.camera_from_world;
+  result.relocalized = lost_;
   velocity_ = lost_ ? Eigen::Isometry3d::Identity()
                     : frame.camera_from_world * last_->camera_from_world.inverse();
   lost_ = false;

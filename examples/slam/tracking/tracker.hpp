@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -56,6 +57,7 @@ const char* toString(TrackingFailure failure) noexcept;
 struct TrackingResult {
   TrackingFailure failure = TrackingFailure::kNone;
   bool new_key_frame = false;
+  bool relocalized = false;  ///< The frame was found again after others were lost.
   int reference = 0;  ///< Key frame that the pose hangs on: what moves it, moves the pose.
   std::size_t matches = 0;  ///< Map points matched in the last search.
   std::size_t inliers = 0;  ///< Those that agree with the pose.
@@ -68,8 +70,12 @@ class Tracker {
  public:
   Tracker(const PinholeCamera& camera, const TrackerOptions& options);
 
+  /// Where a lost frame may be, by place recognition.
+  using Relocalize = std::function<std::optional<Eigen::Isometry3d>(const Frame&)>;
+
   /// Tracks the next frame, whose points are labelled and weighted already.
-  TrackingResult track(Frame frame);
+  /// @param by_place is asked when neither prediction nor the latest key frames help; may be empty.
+  TrackingResult track(Frame frame, const Relocalize& by_place = {});
 
   const Map& map() const noexcept { return map_; }
 
@@ -89,6 +95,8 @@ class Tracker {
   PoseRefinementResult refine(const Frame& frame, const std::vector<PointMatch>& matches,
                               const Eigen::Isometry3d& initial) const;
   std::optional<Eigen::Isometry3d> relocalize(const Frame& frame) const;
+  Estimate findAgain(const Frame& frame, const KeyPointGrid& grid,
+                     const std::vector<int>& candidates, const Relocalize& by_place) const;
   bool needsKeyFrame(const Frame& frame) const;
   TrackingResult initialize(Frame frame);
   TrackingResult lose();

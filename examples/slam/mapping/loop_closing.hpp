@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "slam/concurrency/worker.hpp"
+#include "slam/loop/loop_closer.hpp"
+#include "slam/loop/loop_detector.hpp"
+#include "slam/loop/relocalizer.hpp"
+#include "slam/mapping/map.hpp"
+
+namespace hmcdyn::slam {
+
+struct LoopClosingOptions {
+  bool enabled = true;
+  LoopDetectorOptions detector;
+  LoopCloserOptions closer;
+  RelocalizerOptions relocalizer;
+  /// A key frame's answer is taken up this many frames later, and waited for, so that runs repeat;
+  /// so is a correction, at once. 0 = whenever it is there (real time).
+  std::size_t delay = 2;
+};
+
+/// A loop candidate in the terms of time.
+struct LoopEvent {
+  double timestamp = 0.0;          ///< Of the current key frame (s).
+  double matched_timestamp = 0.0;  ///< Of the older one (s).
+  double score = 0.0;
+  std::size_t inliers = 0;
+  std::string refusal;  ///< Empty = accepted.
+};
+
+/// Place recognition, loop detection and correction on a thread of their own. The thread owns the
+/// index; what it needs of the map it is given as copies, and what it finds comes back as values.
+class LoopClosing {
+ public:
+  LoopClosing(const PinholeCamera& camera, const LoopClosingOptions& options);
+
+  /// Hands the latest key frame to the thread; where the thread is far behind, it is left out.
+  void process(const Map& map);
+
+  /// Call once a frame. A correction is of the whole map: one of a local adjustment that was begun
+  /// before it is void.
+  std::optional<MapCorrection> poll(const Map& map);
+
+  /// Waits for what is outstanding, and for the correction that it leads to.
+  std::optional<MapCorrection> finish(const Map& map);
+
+  /// Where a lost frame is; waits for the thread. Nothing where no place looks alike.
+  std::optional<Eigen::Isometry3d> relocalize(const Frame& frame, const Map& map);
+
+  /// Candidates since the last call.
+  std::vector<LoopEvent> takeEvents();
+
+  std::size_t loopsClosed() const noexcept { return loops_.size(); }
+  std::size_t keyFramesLeftOut() const noexcept { return left_out_; }
+
+ private:
+  struct State;  ///< The thread's own.
+  struct DetectJob {
+    LoopKeyFrame key_frame;
+    std::vector<std::size_t> culled;  ///< Key frames to forget.
+  };
+  struct CloseJob {
+    std::shared_ptr<const LoopSnapshot> snapshot;
+  };
+  struct RelocalizeJob {
+    LoopKeyFrame frame;
+  };
+  /// Where a frame is, told from a key frame: the map may move that meanwhile.
+  struct Relocalized {
+    std::size_t key_frame = 0;
+    std::optional<Eigen::Isometry3d> from_key_frame;
+  };
+  using Job = std::variant<DetectJob, CloseJob, RelocalizeJob>;
+  using Answer = std::variant<LoopReport, MapCorrection, Relocalized>;
+
+  static Answer run(State& state, const LoopClosingOptions& options, Job job);
+
+  std::optional<MapCorrection> takeUp(Answer answer, const Map& map);
+  void note(const LoopReport& report, const Map& map);
+  void submitClosure(const Map& map);
+  std::vector<std::size_t> newlyCulled(const Map& map);
+
+  LoopClosingOptions options_;
+  std::vector<LoopConstraint> loops_;
+  std::vector<LoopEvent> events_;
+  std::optional<Relocalized> relocalized_;
+  std::vector<bool> forgotten_;  ///< Key frames that the thread need not know any more.
+  std::size_t frames_waited_ = 0;
+  std::size_t left_out_ = 0;
+  bool closing_ = false;  ///< A correction is on its way.
+  Worker<Job, Answer> worker_;
+};
+
+}  // namespace hmcdyn::slam
