@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <cstddef>
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 #include <ceres/tiny_solver.h>
+#include <ceres/version.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
@@ -60,10 +62,27 @@ Eigen::Matrix<double, 2, 3> pixelByPoint(const PinholeCamera& camera, const Eige
 
 // The usual way to optimise on SE(3) with analytic Jacobians: the cost function gives the
 // derivative by the tangent, and the manifold's Jacobian passes it on unchanged.
+#if CERES_VERSION_MAJOR > 2 || (CERES_VERSION_MAJOR == 2 && CERES_VERSION_MINOR >= 1)
 class Se3Manifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }
   int TangentSize() const override { return 6; }
+  bool PlusJacobian(const double* /*x*/, double* jacobian) const override {
+    return tangentFirst(jacobian);
+  }
+  bool Minus(const double* /*y*/, const double* /*x*/, double* /*delta*/) const override {
+    return false;  // the solver does not need it
+  }
+  bool MinusJacobian(const double* /*x*/, double* /*jacobian*/) const override { return false; }
+#else
+class Se3Manifold final : public ceres::LocalParameterization {
+ public:
+  int GlobalSize() const override { return 7; }
+  int LocalSize() const override { return 6; }
+  bool ComputeJacobian(const double* /*x*/, double* jacobian) const override {
+    return tangentFirst(jacobian);
+  }
+#endif
   bool Plus(const double* x, const double* delta, double* sum) const override {
     const Eigen::Map<const Eigen::Quaterniond> q(x);
     const Eigen::Map<const Eigen::Vector3d> t(x + 4);
@@ -77,14 +96,12 @@ class Se3Manifold final : public ceres::Manifold {
     Eigen::Map<Eigen::Vector3d>{sum + 4} = step * t + Eigen::Map<const Eigen::Vector3d>(delta + 3);
     return true;
   }
-  bool PlusJacobian(const double* /*x*/, double* jacobian) const override {
+
+ private:
+  static bool tangentFirst(double* jacobian) {
     Eigen::Map<Eigen::Matrix<double, 7, 6, Eigen::RowMajor>>{jacobian}.setIdentity();
     return true;
   }
-  bool Minus(const double* /*y*/, const double* /*x*/, double* /*delta*/) const override {
-    return false;  // the solver does not need it
-  }
-  bool MinusJacobian(const double* /*x*/, double* /*jacobian*/) const override { return false; }
 };
 
 class AnalyticCost final : public ceres::SizedCostFunction<2, 7> {
@@ -269,7 +286,11 @@ Eigen::Isometry3d TinySolverOverAllResiduals::operator()(const PoseInput& input,
   return fromAngleAxis(pose);
 }
 
-Eigen::Isometry3d solveWithOpenCv(const PoseInput& input, double tolerance) {
+Eigen::Isometry3d solveWithOpenCvDefaults(const PoseInput& input) {
+  return solveWithOpenCv(input, FLT_EPSILON, 20);
+}
+
+Eigen::Isometry3d solveWithOpenCv(const PoseInput& input, double tolerance, int iterations) {
   std::vector<cv::Point3f> world;
   std::vector<cv::Point2f> pixels;
   for (std::size_t i = 0; i < input.x.size(); ++i) {
@@ -283,7 +304,7 @@ Eigen::Isometry3d solveWithOpenCv(const PoseInput& input, double tolerance) {
   cv::Vec3d translation(pose[3], pose[4], pose[5]);
   cv::solvePnPRefineLM(
       world, pixels, matrix, cv::noArray(), rotation, translation,
-      cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 100, tolerance));
+      cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, iterations, tolerance));
   pose << rotation[0], rotation[1], rotation[2], translation[0], translation[1], translation[2];
   return fromAngleAxis(pose);
 }

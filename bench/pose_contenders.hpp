@@ -47,6 +47,9 @@ class TinySolverOverAllResiduals {
 };
 
 /// cv::solvePnPRefineLM, whose tolerance is one on the step.
-Eigen::Isometry3d solveWithOpenCv(const PoseInput& input, double tolerance);
+Eigen::Isometry3d solveWithOpenCv(const PoseInput& input, double tolerance, int iterations = 100);
+
+/// The same with the criteria that OpenCV gives it where the caller names none.
+Eigen::Isometry3d solveWithOpenCvDefaults(const PoseInput& input);
 
 }  // namespace hmcdyn::bench

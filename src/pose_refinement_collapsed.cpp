@@ -65,8 +65,8 @@ void CollapsedPoseProblem::choosePoints(const PoseObservations& observations) {
   for (std::size_t i = 0; i < observations.size(); ++i) {
     not_finite += zeroIfFinite(observations, i) == 0.0f ? 0U : 1U;
   }
-  for (std::size_t i = 0; i < observations.weight.size(); ++i) {
-    weightless += observations.weight[i] == 0.0f ? 1U : 0U;
+  for (const float weight : observations.weight) {
+    weightless += weight == 0.0f ? 1U : 0U;
   }
   not_finite_ = not_finite;
   index_.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pose_refinement_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -42,8 +43,8 @@ template <class InRange>
 void checkElements(const char* array, Span<const float> values, const InRange& in_range,
                    const char* expected) {
   unsigned refused = 0;  // counted first: that the compiler can vectorise
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    refused += in_range(values[i]) ? 0U : 1U;
+  for (const float value : values) {
+    refused += in_range(value) ? 0U : 1U;
   }
   for (std::size_t i = 0; i < values.size() && refused > 0; ++i) {
     if (!in_range(values[i])) {
@@ -143,7 +144,10 @@ void checkInput(const PoseObservations& observations, const PinholeCamera& camer
 }
 
 ProjectionModel projectionModel(const PinholeCamera& camera, const PoseRefinementOptions& options) {
-  return {camera, options.depth_row, options.baseline_fx, options.min_depth};
+  // At min_depth = 0, too, a depth must leave the projection finite.
+  constexpr double kSmallestDepth = 1e-12;
+  return {camera, options.depth_row, options.baseline_fx,
+          std::max(options.min_depth, kSmallestDepth)};
 }
 
 bool isFinite(const PoseObservations& observations, std::size_t i) {

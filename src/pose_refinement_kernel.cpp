@@ -66,8 +66,8 @@ struct View {
     }
   }
 
-  std::array<std::array<Lanes, 3>, 3> r;
-  std::array<Lanes, 3> t;
+  std::array<std::array<Lanes, 3>, 3> r{};
+  std::array<Lanes, 3> t{};
   Lanes fx, fy, square_fx, square_fy, baseline_fx, nearest;
 };
 

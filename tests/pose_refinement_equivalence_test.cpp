@@ -182,6 +182,35 @@ TEST_P(BothSolvers, RefuseTheSameStepsBehindTheCamera) {
   }
 }
 
+TEST_P(BothSolvers, AgreeWithoutALeastDepth) {
+  // Given min_depth = 0, and points in and behind the plane of the camera,
+  Problem problem = randomProblem(11, 100);
+  PoseScene& scene = problem.scene;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double z = i % 2 == 0 ? 0.0 : -1e-3;
+    const Eigen::Vector3d world =
+        problem.initial.inverse() * Eigen::Vector3d(0.1 * static_cast<double>(i), 0.3, z);
+    scene.x[i] = static_cast<float>(world.x());
+    scene.y[i] = static_cast<float>(world.y());
+    scene.z[i] = static_cast<float>(world.z());
+  }
+  // of which those in the plane, where rounding decides, have no weight,
+  scene.weight[0] = scene.weight[2] = scene.weight[4] = 0.0f;
+  PoseRefinementOptions one_round = options();
+  one_round.rounds = 1;
+  one_round.plain_rounds = 0;
+  one_round.min_depth = 0.0;
+  one_round.chi2_two_rows = 1e9;
+  one_round.chi2_three_rows = 1e9;
+  one_round.function_tolerance = 1e-13;
+  const auto fast = refineBy(PoseSolver::kCollapsed, problem, one_round);
+  const auto oracle = refineBy(PoseSolver::kCeresProblem, problem, one_round);
+  ASSERT_TRUE(fast.succeeded()) << fast.message;
+  ASSERT_TRUE(oracle.succeeded()) << oracle.message;
+  EXPECT_EQ(fast.usable_points, oracle.usable_points);
+  EXPECT_NEAR(fast.final_cost, oracle.final_cost, 1e-6 * oracle.final_cost);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Costs, BothSolvers,
     ::testing::Values(

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "evaluate/absolute_trajectory_error.hpp"
 #include "evaluate/map_score.hpp"
 #include "evaluate/point_cloud_file.hpp"
+#include "evaluate/pose_alignment.hpp"
 
 namespace {
 
@@ -29,10 +29,8 @@ struct Arguments {
 std::vector<Eigen::Vector3f> alignedPoints(const Arguments& arguments) {
   std::vector<Eigen::Vector3f> points = readPlyPositions(arguments.map);
   if (!arguments.trajectory.empty()) {
-    const Alignment alignment =
-        absoluteTrajectoryError(readTrajectory(arguments.sequence / "groundtruth.txt"),
-                                readTrajectory(arguments.trajectory))
-            .alignment;
+    const Alignment alignment = alignPoses(readTrajectory(arguments.sequence / "groundtruth.txt"),
+                                           readTrajectory(arguments.trajectory));
     for (Eigen::Vector3f& point : points) {
       point = (alignment * point.cast<double>()).cast<float>();
     }

@@ -81,9 +81,11 @@ struct PoseRefinementOptions {
 
   double min_depth = 0.05;            ///< Nearer points (m) count as behind the camera; >= 0.
   int max_iterations = 20;            ///< Levenberg-Marquardt steps a round; >= 1.
-  double function_tolerance = 1e-8;   ///< Stops at a smaller relative change of the cost.
+  double function_tolerance = 1e-8;   ///< Stops at a smaller relative change of the cost, or
+                                      ///< (kCollapsed) where the linear model promises a smaller.
   double gradient_tolerance = 1e-10;  ///< Stops at a smaller largest gradient entry.
-  double parameter_tolerance = 1e-9;  ///< Stops at a smaller relative step.
+  double parameter_tolerance = 1e-9;  ///< Stops at a smaller relative step: relative to the sum
+                                      ///< of the round's steps (kCollapsed) or to the pose.
 
   PoseSolver solver = PoseSolver::kCollapsed;
 };
