@@ -46,6 +46,14 @@ void StageTimes::add(const StageTime& time) {
   }
 }
 
+void StageTimes::prepend(const StageTimes& before) {
+  StageTimes all = before;
+  for (const StageTime& time : stages_) {
+    all.add(time);
+  }
+  *this = std::move(all);
+}
+
 const StageTime* StageTimes::find(const std::string& stage) const noexcept {
   const auto known = findStage(stages_, stage);
   return known == stages_.end() ? nullptr : &*known;

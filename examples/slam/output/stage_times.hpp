@@ -35,6 +35,9 @@ class StageTimes {
   /// Times of a stage that ran several times in the frame add up.
   void add(const StageTime& time);
 
+  /// The stages of `before` come first, those that are here already behind them.
+  void prepend(const StageTimes& before);
+
   /// Runs `work`, notes what it took and hands on what it returns. Nothing is noted when it throws.
   template <class Work>
   std::invoke_result_t<Work> measure(std::string stage, Work&& work) {

@@ -52,7 +52,34 @@ void declareInput(CLI::App& app, SlamOptions& options) {
   app.add_option("--dataset", options.dataset,
                  "Folder in TUM RGB-D format (BONN's is the same): rgb.txt, depth.txt, perhaps "
                  "associations.txt and groundtruth.txt")
-      ->required()
+      ->group("Input");
+  app.add_option("--source", options.source,
+                 "folder (--dataset), or live (a depth camera, in real time)")
+      ->transform(CLI::CheckedTransformer(
+                      std::map<std::string, SourceKind>{{"folder", SourceKind::kFolder},
+                                                        {"live", SourceKind::kLive}})
+                      .description(""))
+      ->default_str("folder")
+      ->group("Input");
+  app.add_option("--live-backend", options.live.backend, "Driver of the live camera")
+      ->check(CLI::IsMember(depthCameraBackends()))
+      ->capture_default_str()
+      ->group("Input");
+  app.add_option("--live-index", options.live.index, "Which of the live cameras, from 0")
+      ->capture_default_str()
+      ->group("Input");
+  app.add_option("--mode", options.mode,
+                 "offline (every frame waits for its detection; one seed, one result) or realtime "
+                 "(frames by their stamps, late ones dropped and counted)")
+      ->transform(CLI::CheckedTransformer(
+                      std::map<std::string, RunMode>{{"offline", RunMode::kOffline},
+                                                     {"realtime", RunMode::kRealtime}})
+                      .description(""))
+      ->default_str("offline")
+      ->group("Input");
+  app.add_option("--speed", options.speed, "realtime: so many times as fast as it was recorded")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
       ->group("Input");
   app.add_option("--camera", options.camera,
                  "Camera: " + join(cameraPresetNames()) +
@@ -198,6 +225,9 @@ void declareTracking(CLI::App& app, SlamOptions& options) {
       ->group("Tracking");
   app.add_flag("!--no-mapping", options.mapping.enabled, "Without local bundle adjustment")
       ->group("Tracking");
+  app.add_flag("!--no-loops", options.loops.enabled,
+               "Without loop closing and relocalisation by place")
+      ->group("Tracking");
   app.add_option("--max-depth", options.tracker.map.max_depth,
                  "Farther points (m) do not enter the map")
       ->capture_default_str()
@@ -218,12 +248,22 @@ void declareOutput(CLI::App& app, SlamOptions& options) {
   app.add_flag("--write-keypoints", options.write_keypoints,
                "keypoints.csv: timestamp,u,v,depth,distance,cluster,label,weight")
       ->group("Output");
+  app.add_flag("!--no-dense-map", options.dense_map, "No map.ply")->group("Output");
+  app.add_flag("!--no-report", options.write_report, "No report.html")->group("Output");
   app.add_flag("--quiet", options.quiet, "No progress bar")->group("Output");
 }
 
 }  // namespace
 
-void distributeSeed(SlamOptions& options) {
+void prepareOptions(SlamOptions& options) {
+  if (options.mode == RunMode::kRealtime || options.source == SourceKind::kLive) {
+    options.mode = RunMode::kRealtime;
+    options.mapping.delay = 0;
+    options.loops.delay = 0;
+  }
+  options.loops.detector.place.seed = options.seed;
+  options.loops.detector.verification.ransac.seed = options.seed;
+  options.loops.relocalizer.ransac.seed = options.seed;
   options.filter.filter.motion.seed = options.seed;
   options.filter.filter.stage.depth_ransac.seed = options.seed;
   options.tracker.seed = options.seed;

@@ -12,6 +12,7 @@
 
 #include "slam/pipeline/command_line.hpp"
 #include "slam/pipeline/run.hpp"
+#include "slam/pipeline/stop_request.hpp"
 
 namespace {
 
@@ -39,7 +40,8 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? EXIT_SUCCESS : kBadUsage;
   }
   try {
-    const nlohmann::json summary = hmcdyn::slam::runSlam(options);
+    const hmcdyn::slam::StopRequest stop;  // Ctrl-C finishes what there is
+    const nlohmann::json summary = hmcdyn::slam::runSlam(options, [&] { return stop.requested(); });
     printSummary(summary, options.output);
     return summary.at("counts").at("frames_tracked") > 0 ? EXIT_SUCCESS : kBadData;
   } catch (const std::invalid_argument& error) {

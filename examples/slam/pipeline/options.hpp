@@ -11,13 +11,28 @@
 #include "slam/features/orb_extractor.hpp"
 #include "slam/filtering/motion_filter.hpp"
 #include "slam/mapping/local_mapper.hpp"
+#include "slam/mapping/loop_closing.hpp"
+#include "slam/source/depth_camera.hpp"
 #include "slam/tracking/tracker.hpp"
 
 namespace hmcdyn::slam {
 
+/// How time passes.
+enum class RunMode : std::uint8_t {
+  kOffline,   ///< Every frame waits for its detection; with one seed the same result bit for bit.
+  kRealtime,  ///< Frames come by their stamps; tracking waits for nobody, late frames are dropped.
+};
+
+/// Where frames come from.
+enum class SourceKind : std::uint8_t { kFolder, kLive };
+
 /// Everything that a run depends on.
 struct SlamOptions {
+  RunMode mode = RunMode::kOffline;
+  SourceKind source = SourceKind::kFolder;
   std::filesystem::path dataset;  ///< Folder in TUM format.
+  double speed = 1.0;             ///< Real time: so many times as fast as it was recorded.
+  DepthCameraOptions live;        ///< The camera of SourceKind::kLive.
   DatasetOptions association;
   std::string camera = "tum3";  ///< Preset or calibration file.
   DetectorOptions detector;
@@ -27,16 +42,20 @@ struct SlamOptions {
   MotionFilterOptions filter;
   TrackerOptions tracker;
   LocalMapperOptions mapping;
+  LoopClosingOptions loops;
   std::filesystem::path output;       ///< Folder for the results.
   std::filesystem::path groundtruth;  ///< Empty = groundtruth.txt of the data set, where it is.
   std::uint32_t seed = 1;             ///< Of every random draw.
   std::size_t max_frames = 0;         ///< 0 = all.
   bool annotate = false;              ///< A picture a frame.
   bool write_keypoints = false;       ///< keypoints.csv.
+  bool dense_map = true;              ///< map.ply.
+  bool write_report = true;           ///< report.html.
   bool quiet = false;                 ///< No progress bar.
 };
 
-/// Passes SlamOptions::seed on to every step that draws.
-void distributeSeed(SlamOptions& options);
+/// Passes the seed on to every step that draws, and the mode to the threads: offline their answers
+/// are waited for, so that runs repeat; in real time they are taken when they come.
+void prepareOptions(SlamOptions& options);
 
 }  // namespace hmcdyn::slam

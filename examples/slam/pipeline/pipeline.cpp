@@ -5,13 +5,10 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "slam/detection/detector_factory.hpp"
 #include "slam/pipeline/feature_budget.hpp"
 
 namespace hmcdyn::slam {
-namespace {
 
-/// Where corners are the world's: the border of the rectified image is an edge that is none.
 cv::Mat cornerMask(const Rectifier& rectifier) {
   if (rectifier.isIdentity()) {
     return {};
@@ -23,66 +20,76 @@ cv::Mat cornerMask(const Rectifier& rectifier) {
   return mask;
 }
 
-}  // namespace
-
-Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibration)
-    : boxes_are_raw_(options.detector.type == "file"),
-      rectifier_(calibration),
-      valid_mask_(cornerMask(rectifier_)),
-      detector_(makeDetector(options.detector)),
+Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibration,
+                   cv::Mat corner_mask)
+    : corner_mask_(std::move(corner_mask)),
       extractor_(options.features),
       max_feature_factor_(options.max_feature_factor),
       filter_(options.filter),
       tracker_(calibration.pinhole, options.tracker),
-      mapper_(options.mapping) {}
+      mapper_(options.mapping),
+      loops_(calibration.pinhole, options.loops) {}
 
-std::vector<DetectionBox> Pipeline::detect(const RgbdFrame& raw, const RgbdFrame& rectified) {
-  if (!boxes_are_raw_) {
-    return detector_->detect(rectified.bgr, rectified.timestamp);
-  }
-  std::vector<DetectionBox> boxes = detector_->detect(raw.bgr, raw.timestamp);
-  for (DetectionBox& box : boxes) {
-    box = rectifier_.box(box);
-  }
-  return boxes;
+Frame Pipeline::extract(const RgbdFrame& image, const std::vector<DetectionBox>& boxes) {
+  const int wanted = featureBudget(extractor_.options().features,
+                                   coveredShare(boxes, image.gray.size()), max_feature_factor_);
+  return makeFrame(image.index, image.timestamp,
+                   extractor_.extract(image.gray, corner_mask_, wanted), image.depth,
+                   extractor_.options().scale_factor);
 }
 
-FrameOutcome Pipeline::process(const RgbdFrame& raw) {
+bool Pipeline::exchangeWithThreads(bool new_key_frame) {
+  bool moved = false;
+  if (const std::optional<MapCorrection> correction = mapper_.poll()) {
+    tracker_.apply(*correction);
+    moved = true;
+  }
+  if (const std::optional<MapCorrection> correction = loops_.poll(tracker_.map())) {
+    mapper_.finish();  // it began in the map as it was before: void
+    tracker_.apply(*correction);
+    moved = true;
+  }
+  if (new_key_frame) {
+    mapper_.adjust(tracker_.map());
+    loops_.process(tracker_.map());
+  }
+  return moved;
+}
+
+FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox> boxes) {
   FrameOutcome outcome;
   StageTimes& times = outcome.times;
-  outcome.image = times.measure("rectify", [&] { return rectify(raw, rectifier_); });
-  const RgbdFrame& image = outcome.image;
-  outcome.boxes = times.measure("detect", [&] { return detect(raw, image); });
+  outcome.image = image;
+  outcome.boxes = std::move(boxes);
 
-  Frame frame = times.measure("features", [&] {
-    const int wanted =
-        featureBudget(extractor_.options().features,
-                      coveredShare(outcome.boxes, image.gray.size()), max_feature_factor_);
-    return makeFrame(image.index, image.timestamp,
-                     extractor_.extract(image.gray, valid_mask_, wanted), image.depth, extractor_.options().scale_factor);
-  });
+  Frame frame = times.measure("features", [&] { return extract(image, outcome.boxes); });
   outcome.filtered = times.measure(
       "filter", [&] { return filter_.filter(image.gray, image.depth, outcome.boxes, frame); });
   outcome.points = frame.points;
   outcome.weight = frame.weight;
-  outcome.tracking = times.measure("track", [&] { return tracker_.track(std::move(frame)); });
+  outcome.size.reserve(frame.points.size());
+  for (const cv::KeyPoint& point : frame.features.key_points) {
+    outcome.size.push_back(point.size);
+  }
+  outcome.tracking = times.measure("track", [&] {
+    return tracker_.track(std::move(frame), [this](const Frame& lost) {
+      return loops_.relocalize(lost, tracker_.map());
+    });
+  });
   if (outcome.tracking.failure == TrackingFailure::kNone) {
     log_.add(image.timestamp, outcome.tracking.camera_from_world, outcome.tracking.reference,
              tracker_.map());
   }
-  times.measure("map", [&] {
-    if (const std::optional<MapCorrection> correction = mapper_.poll()) {
-      tracker_.apply(*correction);
-    }
-    if (outcome.tracking.new_key_frame) {
-      mapper_.adjust(tracker_.map());
-    }
-  });
+  outcome.map_moved = times.measure(
+      "map", [&] { return exchangeWithThreads(outcome.tracking.new_key_frame); });
   return outcome;
 }
 
 void Pipeline::finish() {
   if (const std::optional<MapCorrection> correction = mapper_.finish()) {
+    tracker_.apply(*correction);
+  }
+  while (const std::optional<MapCorrection> correction = loops_.finish(tracker_.map())) {
     tracker_.apply(*correction);
   }
 }

@@ -9,10 +9,10 @@
 #include "slam/camera/calibration.hpp"
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
-#include "slam/detection/detector.hpp"
 #include "slam/features/orb_extractor.hpp"
 #include "slam/filtering/motion_filter.hpp"
 #include "slam/mapping/local_mapper.hpp"
+#include "slam/mapping/loop_closing.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
 #include "slam/pipeline/trajectory_log.hpp"
@@ -25,20 +25,23 @@ struct FrameOutcome {
   RgbdFrame image;                      ///< As processed: undistorted.
   std::vector<DetectionBox> boxes;      ///< In the undistorted image.
   KeyPoints points;                     ///< N key points.
+  std::vector<float> size;              ///< N diameters of the described patches (px).
   std::vector<float> weight;            ///< N weights as the tracker used them.
   DynamicFeatureFilterResult filtered;  ///< What the filter decided about them.
   TrackingResult tracking;              ///< Where the camera is.
+  bool map_moved = false;               ///< A correction was taken up after this frame.
   StageTimes times;                     ///< What it took.
 };
 
-/// The system of the paper, front half: detection, features, filter, tracking, a frame at a time in
-/// the order of its data.
+/// The tracking thread's work on a frame, in the order of its data: features, filter, tracking; and
+/// its dealings with the mapping and the loop thread.
 class Pipeline {
  public:
-  /// @throws std::invalid_argument or std::runtime_error where detector or options cannot be used.
-  Pipeline(const SlamOptions& options, const CameraCalibration& calibration);
+  /// @param corner_mask where corners are the world's; empty = everywhere.
+  Pipeline(const SlamOptions& options, const CameraCalibration& calibration, cv::Mat corner_mask);
 
-  FrameOutcome process(const RgbdFrame& raw);
+  /// @param image undistorted. @param boxes of the detector, in that image.
+  FrameOutcome process(const RgbdFrame& image, std::vector<DetectionBox> boxes);
 
   /// Waits for the threads and takes up what they have.
   void finish();
@@ -47,22 +50,26 @@ class Pipeline {
   std::vector<StampedPose> trajectory() const { return log_.poses(tracker_.map()); }
 
   const Map& map() const noexcept { return tracker_.map(); }
-
-  std::string detectorName() const { return detector_->name(); }
+  LoopClosing& loops() noexcept { return loops_; }
+  const LoopClosing& loops() const noexcept { return loops_; }
+  const LocalMapper& mapper() const noexcept { return mapper_; }
 
  private:
-  std::vector<DetectionBox> detect(const RgbdFrame& raw, const RgbdFrame& rectified);
+  Frame extract(const RgbdFrame& image, const std::vector<DetectionBox>& boxes);
+  bool exchangeWithThreads(bool new_key_frame);
 
-  bool boxes_are_raw_;  ///< Boxes from a file refer to the image as the camera saw it.
-  Rectifier rectifier_;
-  cv::Mat valid_mask_;  ///< Empty = everywhere.
-  std::unique_ptr<ObjectDetector> detector_;
+  cv::Mat corner_mask_;
   OrbExtractor extractor_;
   double max_feature_factor_;
   MotionFilter filter_;
   Tracker tracker_;
   LocalMapper mapper_;
+  LoopClosing loops_;
   TrajectoryLog log_;
 };
+
+/// Where corners are the world's: the border of the rectified image is an edge that is none. Empty
+/// where there is no distortion.
+cv::Mat cornerMask(const Rectifier& rectifier);
 
 }  // namespace hmcdyn::slam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/pipeline/summary.hpp"
 
+#include <algorithm>
 #include <exception>
 
 #include <Eigen/Core>
@@ -44,13 +45,18 @@ void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
   }
 }
 
-void RunCounts::add(const TrackingResult& tracked) {
+void RunCounts::add(double timestamp, const TrackingResult& tracked) {
   if (tracked.failure == TrackingFailure::kNone) {
     ++frames_tracked;
   } else {
     ++failures[toString(tracked.failure)];
+    constexpr std::size_t kMostNamed = 1000;
+    if (lost.size() < kMostNamed) {
+      lost.push_back(timestamp);
+    }
   }
   key_frames += tracked.new_key_frame ? 1 : 0;
+  relocalized += tracked.relocalized ? 1 : 0;
 }
 
 std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptions& options) {
@@ -71,6 +77,60 @@ std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptio
     warnings.push_back(asked + "no key point could be matched with an earlier frame");
   }
   return warnings;
+}
+
+namespace {
+
+nlohmann::json toJson(const std::vector<StageSummary>& stages) {
+  nlohmann::json json;
+  for (const StageSummary& stage : stages) {
+    json[stage.stage] = {{"frames", stage.frames},
+                         {"mean_ms", stage.wall_ms.mean},
+                         {"median_ms", stage.wall_ms.median},
+                         {"p95_ms", stage.wall_ms.p95},
+                         {"mean_cpu_ms", stage.cpu_ms.mean}};
+  }
+  return json;
+}
+
+/// CPU time of the tracking thread a frame (ms): all stages but the detector's.
+double trackingCpuMs(const std::vector<StageSummary>& stages) {
+  double sum = 0.0;
+  for (const StageSummary& stage : stages) {
+    sum += stage.stage == "detect" ? 0.0 : stage.cpu_ms.mean;
+  }
+  return sum;
+}
+
+}  // namespace
+
+nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
+                            const RunCounts& counts, const Pipeline& pipeline,
+                            const std::vector<StageTimes>& times,
+                            const std::filesystem::path& groundtruth) {
+  const std::vector<StageSummary> stages = summarizeStages(times);
+  nlohmann::json summary;
+  summary["source"] = names.source;
+  summary["counts"] = toJson(counts);
+  summary["counts"]["key_frames_kept"] =
+      std::count_if(pipeline.map().keyFrames().begin(), pipeline.map().keyFrames().end(),
+                    [](const KeyFrame& key_frame) { return !key_frame.removed; });
+  summary["counts"]["map_points"] =
+      std::count_if(pipeline.map().points().begin(), pipeline.map().points().end(),
+                    [](const MapPoint& point) { return !point.removed; });
+  summary["counts"]["local_adjustments"] = pipeline.mapper().adjustments();
+  summary["counts"]["loops_closed"] = pipeline.loops().loopsClosed();
+  summary["stages"] = toJson(stages);
+  summary["tracking_cpu_ms"] = trackingCpuMs(stages);
+  summary["options"] = toJson(options, names.detector);
+  summary["versions"] = libraryVersions();
+  summary["warnings"] = filterWarnings(counts, options);
+  if (!groundtruth.empty()) {
+    summary["evaluation"] = evaluateTrajectory(groundtruth, options.output / "trajectory.txt");
+    summary["evaluation_online"] =
+        evaluateTrajectory(groundtruth, options.output / "trajectory_online.txt");
+  }
+  return summary;
 }
 
 nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name) {
@@ -109,10 +169,12 @@ nlohmann::json toJson(const SlamOptions& options, const std::string& detector_na
 }
 
 nlohmann::json toJson(const RunCounts& counts) {
-  return {{"frames_in", counts.frames_in},
+  return {{"frames_in", counts.source.taken_up},
           {"frames_tracked", counts.frames_tracked},
-          {"frames_unreadable", counts.frames_unreadable},
-          {"tracking_rate", share(counts.frames_tracked, counts.frames_in)},
+          {"frames_unreadable", counts.source.unreadable},
+          {"frames_dropped", counts.source.dropped},
+          {"frames_without_depth", counts.source.without_depth},
+          {"tracking_rate", share(counts.frames_tracked, counts.source.taken_up)},
           {"key_frames", counts.key_frames},
           {"frames_with_boxes", counts.frames_with_boxes},
           {"frames_with_distances", counts.frames_with_distances},
@@ -122,7 +184,16 @@ nlohmann::json toJson(const RunCounts& counts) {
           {"labels", counts.labels},
           {"motion_models", counts.models},
           {"fundamental_verdicts", counts.fundamental},
-          {"tracking_failures", counts.failures}};
+          {"tracking_failures", counts.failures},
+          {"lost_frames", counts.lost},
+          {"relocalized", counts.relocalized},
+          {"detections",
+           {{"requested", counts.detections.requested},
+            {"detected", counts.detections.detected},
+            {"replaced", counts.detections.replaced},
+            {"failed", counts.detections.failed}}},
+          {"dense_map_points", counts.map_points},
+          {"stopped_by_signal", counts.stopped}};
 }
 
 nlohmann::json libraryVersions() {

@@ -11,15 +11,16 @@
 
 #include <hmcdyn/dynamic_feature_filter.hpp>
 
+#include "slam/detection/detection_thread.hpp"
 #include "slam/pipeline/options.hpp"
+#include "slam/pipeline/pipeline.hpp"
+#include "slam/source/frame_source.hpp"
 #include "slam/tracking/tracker.hpp"
 
 namespace hmcdyn::slam {
 
 /// What a run counted.
 struct RunCounts {
-  std::size_t frames_in = 0;  ///< Entries of the data set that were taken up.
-  std::size_t frames_unreadable = 0;
   std::size_t frames_tracked = 0;
   std::size_t key_frames = 0;
   std::size_t frames_with_boxes = 0;
@@ -31,14 +32,32 @@ struct RunCounts {
   std::map<std::string, std::size_t> models;       ///< Frame pairs by motion model.
   std::map<std::string, std::size_t> fundamental;  ///< Frame pairs by verdict on F.
   std::map<std::string, std::size_t> failures;     ///< Frames without a pose, by reason.
+  std::vector<double> lost;                        ///< Their time stamps (s), the first 1000.
+  std::size_t relocalized = 0;                     ///< Times that the camera was found again.
+  std::size_t map_points = 0;                      ///< Of the dense map.
+  bool stopped = false;                            ///< By a signal.
+  SourceCounts source;
+  DetectionCounts detections;
 
   void add(const DynamicFeatureFilterResult& filtered);
-  void add(const TrackingResult& tracked);
+  void add(double timestamp, const TrackingResult& tracked);
 };
 
 /// One sentence a reason why the filter, though asked for, had nothing to judge by; empty if it
 /// had.
 std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptions& options);
+
+/// What the run was made with, in words.
+struct RunNames {
+  std::string source;
+  std::string detector;
+};
+
+/// summary.json. @param groundtruth empty = none.
+nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
+                            const RunCounts& counts, const Pipeline& pipeline,
+                            const std::vector<StageTimes>& times,
+                            const std::filesystem::path& groundtruth);
 
 /// The options as JSON, complete enough to repeat the run.
 nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name);

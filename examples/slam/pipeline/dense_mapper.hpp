@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include <hmcdyn/types.hpp>
+
+#include "slam/concurrency/worker.hpp"
+#include "slam/dense/dense_map.hpp"
+#include "slam/mapping/map.hpp"
+#include "slam/pipeline/pipeline.hpp"
+
+namespace hmcdyn::slam {
+
+/// Collects key frames for the dense map on a thread of its own, without people and other things
+/// that move.
+class DenseMapper {
+ public:
+  DenseMapper();
+
+  /// Hands over a key frame; waits where the thread is far behind.
+  void add(std::size_t key_frame, const FrameOutcome& outcome);
+
+  /// The dense map with the poses that the key frames have now.
+  FusionResult fuse(const Map& map);
+
+ private:
+  struct Job {
+    std::size_t key_frame = 0;
+    cv::Mat bgr;
+    cv::Mat depth;
+    std::vector<DetectionBox> boxes;
+    std::vector<cv::Point2f> dynamic_points;
+  };
+
+  std::shared_ptr<DenseMap> dense_;  ///< The thread's, until the queue is empty.
+  Worker<Job, std::monostate> worker_;
+};
+
+}  // namespace hmcdyn::slam

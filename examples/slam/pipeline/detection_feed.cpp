@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/pipeline/detection_feed.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "slam/detection/detector_factory.hpp"
+
+namespace hmcdyn::slam {
+
+DetectionFeed::DetectionFeed(const SlamOptions& options, const Rectifier& rectifier, Report report)
+    : realtime_(options.mode == RunMode::kRealtime),
+      boxes_are_raw_(options.detector.type == "file"),
+      rectifier_(rectifier),
+      thread_(makeDetector(options.detector), std::move(report)) {}
+
+std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> boxes) const {
+  if (boxes_are_raw_) {
+    for (DetectionBox& box : boxes) {
+      box = rectifier_.box(box);
+    }
+  }
+  return boxes;
+}
+
+void DetectionFeed::ask(const PreparedFrame& frame) {
+  DetectionRequest request{frame.raw.index, frame.raw.timestamp,
+                           boxes_are_raw_ ? frame.raw.bgr : frame.image.bgr};
+  if (realtime_) {
+    thread_.requestNewest(std::move(request));
+  } else {
+    thread_.request(std::move(request));
+  }
+}
+
+FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
+  FrameBoxes result;
+  std::optional<Detection> detection;
+  if (realtime_) {
+    detection = thread_.tryTakeNewest();
+  } else {
+    detection = thread_.take();
+  }
+  if (detection) {
+    result.boxes = rectified(std::move(detection->boxes));
+    result.detected = !detection->failed && detection->frame == frame.raw.index;
+    result.detect_wall_ms = detection->wall_ms;
+    result.detect_cpu_ms = detection->cpu_ms;
+  }
+  return result;
+}
+
+}  // namespace hmcdyn::slam

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "slam/camera/rectifier.hpp"
+#include "slam/dataset/frame.hpp"
+#include "slam/detection/detection_thread.hpp"
+#include "slam/output/stage_times.hpp"
+#include "slam/pipeline/options.hpp"
+
+namespace hmcdyn::slam {
+
+/// A frame as it came and as it is tracked.
+struct PreparedFrame {
+  RgbdFrame raw;
+  RgbdFrame image;         ///< Undistorted; the same images where there is no distortion.
+  StageTime rectify_time;
+};
+
+/// A frame's boxes, and where they come from.
+struct FrameBoxes {
+  std::vector<DetectionBox> boxes;  ///< In the undistorted image.
+  bool detected = false;            ///< By the detector in this very frame; else carried on.
+  double detect_wall_ms = 0.0;      ///< Of the detector's thread; 0 without an answer.
+  double detect_cpu_ms = 0.0;
+};
+
+/// The boxes of each frame. Offline every frame waits for its own detection; in real time none
+/// waits, and boxes of an earlier frame are carried on.
+class DetectionFeed {
+ public:
+  /// @throws std::invalid_argument or std::runtime_error where the detector cannot be used.
+  DetectionFeed(const SlamOptions& options, const Rectifier& rectifier, Report report);
+
+  /// Offline: asks for a frame, at most one ahead of the frame whose boxes are taken.
+  void ask(const PreparedFrame& frame);
+
+  /// The boxes of a frame, asked for in this order.
+  FrameBoxes boxesOf(const PreparedFrame& frame);
+
+  const DetectionCounts& counts() const noexcept { return thread_.counts(); }
+  const std::string& detectorName() const noexcept { return thread_.detectorName(); }
+
+ private:
+  std::vector<DetectionBox> rectified(std::vector<DetectionBox> boxes) const;
+
+  bool realtime_;
+  bool boxes_are_raw_;  ///< Boxes from a file refer to the image as the camera saw it.
+  Rectifier rectifier_;
+  DetectionThread thread_;
+};
+
+}  // namespace hmcdyn::slam
