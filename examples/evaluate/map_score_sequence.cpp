@@ -42,7 +42,7 @@ Calibration readCalibration(const std::filesystem::path& file) {
 }
 
 cv::Mat readImage(const std::filesystem::path& file, int type) {
-  const cv::Mat image =
+  cv::Mat image =
       std::filesystem::exists(file) ? cv::imread(file.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
   if (image.type() != type || image.empty()) {
     throw std::runtime_error(file.string() + ": is missing, or no PNG of the expected type");

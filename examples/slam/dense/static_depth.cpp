@@ -2,6 +2,7 @@
 #include "slam/dense/static_depth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -51,18 +52,17 @@ cv::Range pixels(float low, float high, int size) {
 bool atJump(const cv::Mat& depth, int row, int column, float share) {
   constexpr int kReach = 2;
   const float here = depth.at<float>(row, column);
-  for (const auto& [dr, dc] : {std::pair{-kReach, 0}, {kReach, 0}, {0, -kReach}, {0, kReach}}) {
-    const int r = row + dr;
-    const int c = column + dc;
+  constexpr std::array<std::pair<int, int>, 4> kSteps{
+      {{-kReach, 0}, {kReach, 0}, {0, -kReach}, {0, kReach}}};
+  return std::any_of(kSteps.begin(), kSteps.end(), [&](const std::pair<int, int>& step) {
+    const int r = row + step.first;
+    const int c = column + step.second;
     if (r < 0 || c < 0 || r >= depth.rows || c >= depth.cols) {
-      continue;
+      return false;
     }
     const float there = depth.at<float>(r, c);
-    if (hasDepth(there) && std::abs(there - here) > share * here) {
-      return true;
-    }
-  }
-  return false;
+    return hasDepth(there) && std::abs(there - here) > share * here;
+  });
 }
 
 }  // namespace

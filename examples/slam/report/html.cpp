@@ -30,7 +30,9 @@ void collectLeaves(const Json& json, const std::string& name,
     return;
   }
   for (const auto& [key, value] : json.items()) {
-    collectLeaves(value, name.empty() ? key : name + "." + key, rows);
+    std::string path = name;
+    path += path.empty() ? "" : ".";
+    collectLeaves(value, path += key, rows);
   }
 }
 

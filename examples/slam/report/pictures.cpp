@@ -119,6 +119,7 @@ std::vector<ReportPicture> choosePictures(const std::vector<FramePicture>& pictu
     chosen.insert(free[(2 * i + 1) * free.size() / (2 * left)]);
   }
   std::vector<ReportPicture> result;
+  result.reserve(chosen.size());
   for (const std::size_t i : chosen) {
     result.push_back({caption(pictures[i].frame, frames, worst == i), pictures[i].jpeg});
   }

@@ -154,7 +154,7 @@ std::string timeSection(const Json& data) {
   std::string html = "<div class=\"bar\">Time axis, all charts:";
   for (const auto& [action, text] :
        {std::pair{"in", "+"}, {"out", "−"}, {"left", "◀"}, {"right", "▶"}, {"all", "whole run"}}) {
-    html += fmt::format("<button type=\"button\" data-zoom=\"{}\">{}</button>", action, text);
+    html += fmt::format(R"(<button type="button" data-zoom="{}">{}</button>)", action, text);
   }
   html +=
       "<span>Drag in a chart to zoom, double-click to go back; Ctrl or Shift and the wheel works, "
@@ -221,8 +221,9 @@ std::string pictureSection(const std::vector<ReportPicture>& pictures) {
     }
     bytes += picture.jpeg.size();
     const std::string caption = escapeHtml(picture.caption);
-    html += "<figure><img loading=\"lazy\" alt=\"" + caption + "\" src=\"data:image/jpeg;base64," +
-            base64(picture.jpeg) + "\"><figcaption>" + caption + "</figcaption></figure>\n";
+    html += fmt::format(R"(<figure><img loading="lazy" alt="{0}" src="data:image/jpeg;base64,{1}">)"
+                        "<figcaption>{0}</figcaption></figure>\n",
+                        caption, base64(picture.jpeg));
   }
   if (pictures.empty()) {
     return "";
@@ -314,7 +315,7 @@ std::string renderReport(const ReportInput& input) {
   html += "</main>\n<footer><details><summary>Charts: uPlot 1.6.32, MIT licence</summary><p>" +
           escapeHtml(std::string(assets::uplotLicence())) + "</p></details></footer>\n";
   html += "<script id=\"status\" type=\"application/json\"></script>\n";
-  html += "<script id=\"data\" type=\"application/json\">" + scriptJson(data) + "</script>\n";
+  html += R"(<script id="data" type="application/json">)" + scriptJson(data) + "</script>\n";
   html += script(assets::uplotJs()) + script(assets::pageJs()) + "</body>\n</html>\n";
   return html;
 }

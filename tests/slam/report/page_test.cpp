@@ -121,6 +121,12 @@ TEST_F(ReportPage, DrawsEveryChartOfARun) {
                  {1700000006.0, 1700000002.0, 0.1, 3, "few"}};
   const DrawnPage drawn = draw(input);
   expectCharts(drawn, all_);
+  // The zoom button halves the time axis of all five charts over time, the other shows all again.
+  ASSERT_EQ(drawn.status["zoomed"].size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(drawn.status["zoomed"][i].get<double>(), 0.5, 1e-9);
+    EXPECT_NEAR(drawn.status["restored"][i].get<double>(), 1.0, 1e-9);
+  }
   for (const nlohmann::json& chart : drawn.status["charts"]) {
     if (chart["id"] == "chart-error") {
       EXPECT_EQ(chart["points"], 288) << "300 frames, 12 lost";

@@ -341,7 +341,21 @@
 
   if (frames) drawAll();
   else document.querySelectorAll(".chart").forEach((c) => refuse(c.id, "The run had no frames."));
+  const publish = () => { document.getElementById("status").textContent = JSON.stringify(status); };
+  const span = (u) => u.scales.x.max - u.scales.x.min;
   setTimeout(() => {
-    document.getElementById("status").textContent = JSON.stringify(status);
+    if (!check || !timeCharts.length) return publish();
+    // Zoom by the page's own buttons: each chart's time axis must show half, then all again.
+    const press = (kind) => document.querySelector(`[data-zoom="${kind}"]`).click();
+    const whole = span(timeCharts[0]);
+    press("in");
+    setTimeout(() => {
+      status.zoomed = timeCharts.map((u) => span(u) / whole);
+      press("all");
+      setTimeout(() => {
+        status.restored = timeCharts.map((u) => span(u) / whole);
+        publish();
+      }, 50);
+    }, 50);
   }, 50);
 })();
