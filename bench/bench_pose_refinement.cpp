@@ -10,7 +10,7 @@
 // minimises the plain sum; `solvepnp_lm_default` is as users call it, with OpenCV's own criteria.
 // All of them solve once, so `hmcdyn` runs with rounds = 1;
 // `hmcdyn_rounds` is the default: four rounds with outlier tests, as the SLAM calls it, to the
-// default tolerances.
+// default tolerances; `hmcdyn_rounds_ceres_problem` is the same by PoseSolver::kCeresProblem.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -194,13 +194,17 @@ void registerAll(std::size_t points) {
   }
   add("solvepnp_lm_default", hmcdyn::bench::solveWithOpenCvDefaults, "OpenCV's own criteria");
   const auto workspace = std::make_shared<hmcdyn::PoseRefinementWorkspace>();
-  add(
-      "hmcdyn_rounds",
-      [workspace](const PoseInput& input) {
-        return refinePose(input.view(), input.camera, input.initial, {}, *workspace)
-            .camera_from_world;
-      },
-      "four rounds");
+  for (const bool plain : {false, true}) {
+    PoseRefinementOptions options;
+    options.solver = plain ? hmcdyn::PoseSolver::kCeresProblem : hmcdyn::PoseSolver::kCollapsed;
+    add(
+        plain ? "hmcdyn_rounds_ceres_problem" : "hmcdyn_rounds",
+        [workspace, options](const PoseInput& input) {
+          return refinePose(input.view(), input.camera, input.initial, options, *workspace)
+              .camera_from_world;
+        },
+        "four rounds");
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
@@ -106,9 +107,8 @@ class Se3Manifold final : public ceres::LocalParameterization {
 
 class AnalyticCost final : public ceres::SizedCostFunction<2, 7> {
  public:
-  AnalyticCost(const Eigen::Vector3d& world, const Eigen::Vector2d& pixel,
-               const PinholeCamera& camera)
-      : world_(world), pixel_(pixel), camera_(camera) {}
+  AnalyticCost(Eigen::Vector3d world, Eigen::Vector2d pixel, const PinholeCamera& camera)
+      : world_(std::move(world)), pixel_(std::move(pixel)), camera_(camera) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
@@ -168,10 +168,12 @@ void solve(ceres::Problem& problem, double tolerance) {
 /// All residuals at once for TinySolver.
 struct AllResiduals {
   using Scalar = double;
+  // NOLINTNEXTLINE(readability-identifier-naming): TinySolver's names
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
 
   const PoseInput* input = nullptr;
 
+  // NOLINTNEXTLINE(readability-identifier-naming)
   int NumResiduals() const { return 2 * static_cast<int>(input->x.size()); }
 
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {

@@ -74,6 +74,30 @@ struct View {
 // The helpers below must become part of the loop that calls them, or the sums leave the registers.
 #define HMCDYN_INLINE [[gnu::always_inline]] inline
 
+struct Loss {
+  Lanes rho, slope;  // rho(s), rho'(s)
+};
+
+/// Both losses without a branch. Huber: rho = min(s, d^2) + 2 d (q - d), rho' = d / q with
+/// q = max(sqrt(s), d). Geman-McClure: rho = share s, rho' = share^2, share = kappa / (kappa + s).
+template <bool kHuber, bool kSwitch>
+HMCDYN_INLINE Loss lossOf(const PointBlock& block, std::size_t first, const Lanes& s) {
+  Loss loss{s, spread(1.0)};
+  if constexpr (kHuber) {
+    const Lanes d = loadLanes(&block.huber[first]);
+    const Lanes square = d * d;
+    const Lanes q = squareRoot(larger(s, square));
+    loss.rho = smaller(s, square) + 2.0 * d * (q - d);
+    loss.slope = d / q;
+  }
+  if constexpr (kSwitch) {
+    const Lanes share = 1.0 / (1.0 + s * loadLanes(&block.inverse_kappa[first]));
+    loss.rho *= share;
+    loss.slope *= share * share;
+  }
+  return loss;
+}
+
 /// Residuals, losses and their factors of kLanes points of a block; adds to cost and behind.
 template <DepthRow kRow, bool kHuber, bool kSwitch>
 HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const View& view,
@@ -112,24 +136,10 @@ HMCDYN_INLINE void linearise(const PointBlock& block, std::size_t first, const V
                            : smaller(s, spread(kBehindCamera)),
              squared_residuals);
 
-  // Both losses without a branch. Huber: rho = min(s, d^2) + 2 d (q - d), rho' = d / q with
-  // q = max(sqrt(s), d). Geman-McClure: rho = share s, rho' = share^2, share = kappa / (kappa + s).
-  Lanes rho = s;
-  Lanes factor = weight;
-  if constexpr (kHuber) {
-    const Lanes d = loadLanes(&block.huber[first]);
-    const Lanes square = d * d;
-    const Lanes q = squareRoot(larger(s, square));
-    rho = smaller(s, square) + 2.0 * d * (q - d);
-    factor *= d / q;
-  }
-  if constexpr (kSwitch) {
-    const Lanes share = 1.0 / (1.0 + s * loadLanes(&block.inverse_kappa[first]));
-    rho *= share;
-    factor *= share * share;
-  }
-  sums.cost += weight * rho;
+  const Loss loss = lossOf<kHuber, kSwitch>(block, first, s);
+  sums.cost += weight * loss.rho;
 
+  const Lanes factor = weight * loss.slope;
   const Lanes pixel_factor = factor * information;
   linearised.x = x;
   linearised.y = y;
