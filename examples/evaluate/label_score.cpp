@@ -126,10 +126,12 @@ double LabelScore::keptShare() const { return ratio(kept_in_boxes, static_in_box
 std::vector<LabelledPoint> readLabelledPoints(const std::filesystem::path& file) {
   std::ifstream stream = open(file);
   const std::string kHeader = "timestamp,u,v,depth,distance,cluster,label,weight";
+  const std::string kHeaderWithSize = kHeader + ",size";
   std::string text;
-  if (!std::getline(stream, text) || text != kHeader) {
-    fail(file, 1, "expected the header '" + kHeader + "'");
+  if (!std::getline(stream, text) || (text != kHeader && text != kHeaderWithSize)) {
+    fail(file, 1, "expected the header '" + kHeaderWithSize + "'");
   }
+  const std::size_t columns = text == kHeader ? 8 : 9;
   std::vector<LabelledPoint> points;
   for (std::size_t line = 2; std::getline(stream, text); ++line) {
     std::vector<std::string> fields;
@@ -137,11 +139,15 @@ std::vector<LabelledPoint> readLabelledPoints(const std::filesystem::path& file)
     for (std::string field; std::getline(row, field, ',');) {
       fields.push_back(field);
     }
-    if (fields.size() != 8) {
-      fail(file, line, "expected 8 fields, found " + std::to_string(fields.size()));
+    if (fields.size() != columns) {
+      fail(file, line,
+           "expected " + std::to_string(columns) + " fields, found " +
+               std::to_string(fields.size()));
     }
+    constexpr double kPatch = 31.0;  // diameter of ORB's patch at the finest level (px)
     points.push_back({fields[0], parseNumber(fields[1], file, line),
-                      parseNumber(fields[2], file, line), fields[6]});
+                      parseNumber(fields[2], file, line), fields[6],
+                      columns == 9 ? parseNumber(fields[8], file, line) / kPatch : 1.0});
   }
   return points;
 }
@@ -170,8 +176,10 @@ LabelScore scoreLabels(const std::vector<LabelledPoint>& points,
       ++score.without_mask;
       continue;
     }
-    count(point, maskAt(mask, point.u, point.v, options.margin), insideAny(*frame_boxes, point),
-          score);
+    constexpr double kFastRadius = 3.0;  // px
+    const int margin = options.margin.value_or(
+        static_cast<int>(std::ceil(kFastRadius * std::max(point.scale, 1.0))));
+    count(point, maskAt(mask, point.u, point.v, margin), insideAny(*frame_boxes, point), score);
   }
   if (score.without_mask == points.size() && !points.empty()) {
     throw std::runtime_error((sequence / "mask").string() + ": no mask for any time stamp");

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct LabelledPoint {
   double u = 0.0;         ///< Column (px).
   double v = 0.0;         ///< Row (px).
   std::string label;      ///< "static", "suspect", "dynamic" or "unmatched".
+  double scale = 1.0;  ///< Of the pyramid level it was found at, >= 1; 1 where the file has none.
 };
 
 /// A detection box of a frame, as boxes.txt has it (px, borders included).
@@ -41,12 +43,13 @@ struct LabelScore {
 
 struct LabelScoreOptions {
   /// Points nearer than this to another class in the mask are not scored (px): at a silhouette the
-  /// corner belongs to both.
-  int margin = 2;
+  /// corner belongs to both. None = the detector's own support, a ring of 3 px radius at the
+  /// point's pyramid level (FAST, Rosten and Drummond 2006).
+  std::optional<int> margin;
   std::size_t skip_frames = 0;  ///< First frames that are left out.
 };
 
-/// Reads keypoints.csv of hmcdyn_slam.
+/// Reads keypoints.csv of hmcdyn_slam, with or without its last column, `size`.
 /// @throws std::runtime_error naming file and line.
 std::vector<LabelledPoint> readLabelledPoints(const std::filesystem::path& file);
 

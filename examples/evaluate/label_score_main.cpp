@@ -106,9 +106,10 @@ int main(int argc, char** argv) {
       ->type_name("SEQUENCE:KEYPOINTS")
       ->required();
   app.add_option("--margin", arguments.options.margin,
-                 "Points this near (px) to a border in the mask are not scored")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+                 "Points this near (px) to a border in the mask are not scored; default: the ring "
+                 "that FAST looks at, 3 px at the pyramid level of the point, so that a corner "
+                 "that is made of both sides counts for neither")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--skip-frames", arguments.options.skip_frames, "First frames that are left out")
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON instead of a table");

@@ -65,6 +65,22 @@ TEST_F(LabelScoring, CountsEveryKindOfPointOnce) {
   EXPECT_DOUBLE_EQ(score.keptShare(), 1.0 / 2.0);
 }
 
+TEST_F(LabelScoring, TheMarginIsTheDetectorsRingAtThePointsLevelOrFixed) {
+  std::ofstream(folder_ / "sized.csv")
+      << "timestamp,u,v,depth,distance,cluster,label,weight,size\n"
+         "1.000000,16,20,3,0,-1,static,1,31\n"   // 4 px from the silhouette, ring of 3 px
+         "1.000000,16,20,3,0,-1,static,1,62\n"   // the same point two octaves up: ring of 6 px
+         "1.000000,17,20,3,0,-1,static,1,31\n";  // 3 px
+  const std::vector<LabelledPoint> points = readLabelledPoints(folder_ / "sized.csv");
+  EXPECT_DOUBLE_EQ(points[1].scale, 2.0);
+  const LabelScore by_ring = scoreLabels(points, folder_);
+  EXPECT_EQ(by_ring.true_static, 1U);
+  EXPECT_EQ(by_ring.on_border, 2U);
+  LabelScoreOptions fixed;
+  fixed.margin = 2;
+  EXPECT_EQ(scoreLabels(points, folder_, fixed).true_static, 3U);
+}
+
 TEST_F(LabelScoring, SharesAreUndefinedWithoutPoints) {
   const LabelScore score;
   EXPECT_TRUE(std::isnan(score.precision()));

@@ -102,8 +102,8 @@ Features OrbExtractor::extract(const cv::Mat& gray, const cv::Mat& mask, int wan
     findCorners(levels_[i], mask);
     available.push_back(static_cast<int>(levels_[i].corners.size()));
   }
-  const std::vector<int> shares = shareOverLevels(wanted > 0 ? wanted : options_.features,
-                                                  available, options_.scale_factor);
+  const std::vector<int> shares =
+      shareOverLevels(wanted > 0 ? wanted : options_.features, available, options_.scale_factor);
   const int total = std::accumulate(shares.begin(), shares.end(), 0);
   Features features;
   if (total > 0) {

@@ -69,7 +69,8 @@ LocalBundle makeLocalBundle(const Map& map, const LocalBundleOptions& options) {
   if (map.keyFrames().size() < 2) {
     return bundle;
   }
-  const std::vector<int> free = freeKeyFrames(map, std::max<std::size_t>(options.free_key_frames, 1));
+  const std::vector<int> free =
+      freeKeyFrames(map, std::max<std::size_t>(options.free_key_frames, 1));
   for (const int point : map.pointsOf(free)) {
     if (takesPart(map.points()[static_cast<std::size_t>(point)], map, options)) {
       bundle.points.push_back(point);
@@ -95,8 +96,8 @@ LocalBundle makeLocalBundle(const Map& map, const LocalBundleOptions& options) {
       const auto pose = pose_of.find(seen.key_frame);
       if (pose != pose_of.end()) {
         bundle.problem.observations.push_back(
-            observe(map.keyFrames()[static_cast<std::size_t>(seen.key_frame)].frame,
-                    seen.key_point, pose->second, static_cast<int>(k)));
+            observe(map.keyFrames()[static_cast<std::size_t>(seen.key_frame)].frame, seen.key_point,
+                    pose->second, static_cast<int>(k)));
       }
     }
   }

@@ -70,9 +70,8 @@ void LoopClosing::process(const Map& map) {
   if (worker_.pending() == 0) {
     frames_waited_ = 0;
   }
-  worker_.submit(
-      DetectJob{makeLoopKeyFrame(map, static_cast<int>(map.keyFrames().size()) - 1),
-                newlyCulled(map)});
+  worker_.submit(DetectJob{makeLoopKeyFrame(map, static_cast<int>(map.keyFrames().size()) - 1),
+                           newlyCulled(map)});
 }
 
 void LoopClosing::note(const LoopReport& report, const Map& map) {
@@ -87,8 +86,7 @@ void LoopClosing::note(const LoopReport& report, const Map& map) {
 
 void LoopClosing::submitClosure(const Map& map) {
   closing_ = true;
-  worker_.submit(
-      CloseJob{std::make_shared<const LoopSnapshot>(makeLoopSnapshot(map, loops_))});
+  worker_.submit(CloseJob{std::make_shared<const LoopSnapshot>(makeLoopSnapshot(map, loops_))});
 }
 
 std::optional<MapCorrection> LoopClosing::takeUp(Answer answer, const Map& map) {
@@ -147,8 +145,7 @@ std::optional<Eigen::Isometry3d> LoopClosing::relocalize(const Frame& frame, con
   if (closing_ || !relocalized_->from_key_frame) {
     return std::nullopt;
   }
-  return *relocalized_->from_key_frame *
-         map.poseOf(static_cast<int>(relocalized_->key_frame));
+  return *relocalized_->from_key_frame * map.poseOf(static_cast<int>(relocalized_->key_frame));
 }
 
 std::vector<LoopEvent> LoopClosing::takeEvents() { return std::exchange(events_, {}); }

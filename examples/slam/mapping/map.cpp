@@ -160,8 +160,7 @@ std::vector<int> Map::nearestKeyFrames(const Eigen::Isometry3d& camera_from_worl
   for (std::size_t k = 0; k < key_frames_.size(); ++k) {
     const Eigen::Isometry3d& pose = key_frames_[k].frame.camera_from_world;
     if (!key_frames_[k].removed && axis.dot(pose.linear().row(2)) > kSameWay) {
-      by_distance.emplace_back((pose.inverse().translation() - centre).norm(),
-                               static_cast<int>(k));
+      by_distance.emplace_back((pose.inverse().translation() - centre).norm(), static_cast<int>(k));
     }
   }
   std::sort(by_distance.begin(), by_distance.end());
@@ -206,10 +205,9 @@ void Map::cullPoints() {
     if (point.removed) {
       continue;
     }
-    const bool rarely_found =
-        point.visible >= kEnoughToJudge &&
-        static_cast<double>(point.found) <
-            options_.min_found_share * static_cast<double>(point.visible);
+    const bool rarely_found = point.visible >= kEnoughToJudge &&
+                              static_cast<double>(point.found) <
+                                  options_.min_found_share * static_cast<double>(point.visible);
     if (point.observations.empty() || rarely_found ||
         point.belief.log_odds < options_.belief.removal) {
       removePoint(static_cast<int>(i));
@@ -289,8 +287,7 @@ void Map::dropObservation(int point, int key_frame) {
       std::find_if(entry.observations.begin(), entry.observations.end(),
                    [key_frame](const Observation& o) { return o.key_frame == key_frame; });
   if (seen != entry.observations.end()) {
-    key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point[seen->key_point] =
-        kNoMapPoint;
+    key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point[seen->key_point] = kNoMapPoint;
     entry.observations.erase(seen);
   }
 }
@@ -302,9 +299,9 @@ void Map::fusePoints(int point, int into) {
     return;
   }
   for (const Observation& seen : gone.observations) {
-    const bool both = std::any_of(
-        kept.observations.begin(), kept.observations.end(),
-        [&](const Observation& other) { return other.key_frame == seen.key_frame; });
+    const bool both =
+        std::any_of(kept.observations.begin(), kept.observations.end(),
+                    [&](const Observation& other) { return other.key_frame == seen.key_frame; });
     key_frames_[static_cast<std::size_t>(seen.key_frame)].frame.map_point[seen.key_point] =
         both ? kNoMapPoint : into;
     if (!both) {
@@ -326,8 +323,7 @@ void Map::apply(const MapCorrection& correction) {
       std::max_element(correction.key_frames.begin(), correction.key_frames.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
   // What came after the snapshot moves with the latest key frame in it.
-  const Eigen::Isometry3d old_world_from_new =
-      poseOf(latest->first).inverse() * latest->second;
+  const Eigen::Isometry3d old_world_from_new = poseOf(latest->first).inverse() * latest->second;
   for (int k = latest->first + 1; k < static_cast<int>(key_frames_.size()); ++k) {
     Frame& frame = key_frames_[static_cast<std::size_t>(k)].frame;
     frame.camera_from_world = frame.camera_from_world * old_world_from_new;

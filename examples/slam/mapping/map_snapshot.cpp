@@ -37,8 +37,8 @@ void addPoints(const Map& map, LoopSnapshot& snapshot) {
       continue;
     }
     for (const Observation& seen : point.observations) {
-      snapshot.sightings.push_back(sightingOf(
-          map.keyFrames()[static_cast<std::size_t>(seen.key_frame)].frame, seen, id));
+      snapshot.sightings.push_back(
+          sightingOf(map.keyFrames()[static_cast<std::size_t>(seen.key_frame)].frame, seen, id));
     }
   }
 }
@@ -58,8 +58,7 @@ LoopKeyFrame makeLoopKeyFrame(const Frame& frame) {
   key_frame.descriptors.create(static_cast<int>(rows.size()), 32, CV_8U);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto i = static_cast<std::size_t>(rows[k]);
-    frame.features.descriptors.row(rows[k]).copyTo(
-        key_frame.descriptors.row(static_cast<int>(k)));
+    frame.features.descriptors.row(rows[k]).copyTo(key_frame.descriptors.row(static_cast<int>(k)));
     key_frame.points.push_back(frame.points.u[i], frame.points.v[i], frame.points.depth[i]);
     key_frame.sigma.push_back(frame.sigma[i]);
     key_frame.map_point.push_back(frame.map_point[i]);

@@ -46,12 +46,12 @@ void checkSizes(const LabelledKeyPoints& frame) {
   checkKeyPoints(frame.points);
   const std::size_t n = frame.points.size();
   if (frame.distances.size() != n || frame.clusters.size() != n || frame.labels.size() != n ||
-      frame.weights.size() != n) {
+      frame.weights.size() != n || frame.sizes.size() != n) {
     throw std::invalid_argument(
-        fmt::format("key points: {} points, {} distances, {} clusters, {} labels, {} weights; "
-                    "expected equal sizes",
+        fmt::format("key points: {} points, {} distances, {} clusters, {} labels, {} weights, "
+                    "{} sizes; expected equal sizes",
                     n, frame.distances.size(), frame.clusters.size(), frame.labels.size(),
-                    frame.weights.size()));
+                    frame.weights.size(), frame.sizes.size()));
   }
 }
 
@@ -101,17 +101,18 @@ void TimingsWriter::write(double timestamp, const StageTimes& times) {
 }
 
 KeyPointsWriter::KeyPointsWriter(const std::filesystem::path& file) : file_(file) {
-  file_.append("timestamp,u,v,depth,distance,cluster,label,weight\n");
+  file_.append("timestamp,u,v,depth,distance,cluster,label,weight,size\n");
 }
 
 void KeyPointsWriter::write(double timestamp, const LabelledKeyPoints& frame) {
   checkSizes(frame);
   std::string rows;
   for (std::size_t i = 0; i < frame.points.size(); ++i) {
-    fmt::format_to(std::back_inserter(rows), "{:.6f},{},{},{},{},{},{},{}\n", timestamp,
+    fmt::format_to(std::back_inserter(rows), "{:.6f},{},{},{},{},{},{},{},{}\n", timestamp,
                    number(frame.points.u[i], 3), number(frame.points.v[i], 3),
                    number(frame.points.depth[i], 4), number(frame.distances[i], 4),
-                   frame.clusters[i], toString(frame.labels[i]), number(frame.weights[i], 4));
+                   frame.clusters[i], toString(frame.labels[i]), number(frame.weights[i], 4),
+                   number(frame.sizes[i], 1));
   }
   file_.append(rows);
 }
@@ -128,8 +129,8 @@ RunFolder::RunFolder(std::filesystem::path folder) : folder_(std::move(folder)) 
   if (!std::filesystem::is_directory(folder_)) {
     fail("is no folder");
   }
-  for (const char* name : {kTrajectoryFile, kOnlineTrajectoryFile, kTimingsFile, kKeyPointsFile, kSummaryFile,
-                           kKeyFramesFile, kLoopsFile, kMapFile, kReportFile}) {
+  for (const char* name : {kTrajectoryFile, kOnlineTrajectoryFile, kTimingsFile, kKeyPointsFile,
+                           kSummaryFile, kKeyFramesFile, kLoopsFile, kMapFile, kReportFile}) {
     std::filesystem::remove(folder_ / name, error);
     if (error) {
       fail(std::string(name) + " of an earlier run cannot be removed: " + error.message());

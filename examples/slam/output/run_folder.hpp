@@ -61,10 +61,11 @@ struct LabelledKeyPoints {
   Span<const int> clusters;       ///< -1 = none.
   Span<const PointLabel> labels;  ///< Verdicts.
   Span<const float> weights;      ///< 0..1.
+  Span<const float> sizes;        ///< Diameters of the described patches (px).
 };
 
 /// keypoints.csv: a header, then a row a key point:
-/// `timestamp,u,v,depth,distance,cluster,label,weight`, NaN as `nan`.
+/// `timestamp,u,v,depth,distance,cluster,label,weight,size`, NaN as `nan`.
 class KeyPointsWriter {
  public:
   explicit KeyPointsWriter(const std::filesystem::path& file);

@@ -55,10 +55,10 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->group("Input");
   app.add_option("--source", options.source,
                  "folder (--dataset), or live (a depth camera, in real time)")
-      ->transform(CLI::CheckedTransformer(
-                      std::map<std::string, SourceKind>{{"folder", SourceKind::kFolder},
-                                                        {"live", SourceKind::kLive}})
-                      .description(""))
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, SourceKind>{{"folder", SourceKind::kFolder},
+                                                                    {"live", SourceKind::kLive}})
+              .description(""))
       ->default_str("folder")
       ->group("Input");
   app.add_option("--live-backend", options.live.backend, "Driver of the live camera")
@@ -71,10 +71,10 @@ void declareInput(CLI::App& app, SlamOptions& options) {
   app.add_option("--mode", options.mode,
                  "offline (every frame waits for its detection; one seed, one result) or realtime "
                  "(frames by their stamps, late ones dropped and counted)")
-      ->transform(CLI::CheckedTransformer(
-                      std::map<std::string, RunMode>{{"offline", RunMode::kOffline},
-                                                     {"realtime", RunMode::kRealtime}})
-                      .description(""))
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, RunMode>{{"offline", RunMode::kOffline},
+                                                                 {"realtime", RunMode::kRealtime}})
+              .description(""))
       ->default_str("offline")
       ->group("Input");
   app.add_option("--speed", options.speed, "realtime: so many times as fast as it was recorded")
@@ -205,8 +205,9 @@ void declareBelief(CLI::App& app, SlamOptions& options) {
   app.add_flag("--forward-backward", flow.forward_backward,
                "Check matches of optical flow by tracking forth again, for twice the time")
       ->group("Belief");
-  app.add_option("--flow-in-boxes", filter.flow_in_boxes,
-                 "Key points in boxes that are followed; their neighbours vote on the others; 0 = all")
+  app.add_option(
+         "--flow-in-boxes", filter.flow_in_boxes,
+         "Key points in boxes that are followed; their neighbours vote on the others; 0 = all")
       ->capture_default_str()
       ->group("Belief");
   app.add_option("--flow-background", filter.flow_background,
@@ -246,7 +247,8 @@ void declareOutput(CLI::App& app, SlamOptions& options) {
                "A picture a frame in OUTPUT/frames: boxes, labels, clusters")
       ->group("Output");
   app.add_flag("--write-keypoints", options.write_keypoints,
-               "keypoints.csv: timestamp,u,v,depth,distance,cluster,label,weight")
+               "keypoints.csv: timestamp,u,v,depth,distance,cluster,label,weight,"
+               "size")
       ->group("Output");
   app.add_flag("!--no-dense-map", options.dense_map, "No map.ply")->group("Output");
   app.add_flag("!--no-report", options.write_report, "No report.html")->group("Output");

@@ -16,7 +16,7 @@ namespace hmcdyn::slam {
 /// A frame as it came and as it is tracked.
 struct PreparedFrame {
   RgbdFrame raw;
-  RgbdFrame image;         ///< Undistorted; the same images where there is no distortion.
+  RgbdFrame image;  ///< Undistorted; the same images where there is no distortion.
   StageTime rectify_time;
 };
 

@@ -30,8 +30,8 @@ double coveredShare(Span<const DetectionBox> boxes, const cv::Size& image) {
 
 int featureBudget(int base, double covered_share, double max_factor) {
   if (base <= 0 || !(max_factor >= 1.0)) {
-    throw std::invalid_argument("featureBudget: base is " + std::to_string(base) +
-                                ", max_factor " + std::to_string(max_factor) +
+    throw std::invalid_argument("featureBudget: base is " + std::to_string(base) + ", max_factor " +
+                                std::to_string(max_factor) +
                                 "; expected a count > 0 and a factor >= 1");
   }
   const double outside = std::clamp(1.0 - covered_share, 1.0 / max_factor, 1.0);

@@ -80,8 +80,8 @@ FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox>
     log_.add(image.timestamp, outcome.tracking.camera_from_world, outcome.tracking.reference,
              tracker_.map());
   }
-  outcome.map_moved = times.measure(
-      "map", [&] { return exchangeWithThreads(outcome.tracking.new_key_frame); });
+  outcome.map_moved =
+      times.measure("map", [&] { return exchangeWithThreads(outcome.tracking.new_key_frame); });
   return outcome;
 }
 

@@ -92,8 +92,7 @@ class FrameFeed {
   std::optional<PreparedFrame> ahead_;
 };
 
-FrameOutcome trackFrame(const PreparedFrame& frame, DetectionFeed& detections,
-                        Pipeline& pipeline) {
+FrameOutcome trackFrame(const PreparedFrame& frame, DetectionFeed& detections, Pipeline& pipeline) {
   FrameBoxes boxes = detections.boxesOf(frame);
   StageTimes before;
   before.add(frame.rectify_time);
@@ -157,9 +156,8 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop) {
     warn(warning);
   }
   const std::filesystem::path groundtruth = groundtruthFile(options);
-  const nlohmann::json summary =
-      summarizeRun(options, {source->name(), detections.detectorName()}, counts, pipeline, times,
-                   groundtruth);
+  const nlohmann::json summary = summarizeRun(options, {source->name(), detections.detectorName()},
+                                              counts, pipeline, times, groundtruth);
   writer.writeSummary(summary);
   writer.writeReport(summary, groundtruth, options);
   return summary;

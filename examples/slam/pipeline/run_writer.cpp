@@ -116,7 +116,7 @@ void RunWriter::writeKeyPoints(const FrameOutcome& outcome) {
   const FilterStageResult& stage = outcome.filtered.stage;
   key_points_->write(outcome.image.timestamp,
                      {outcome.points.view(), outcome.filtered.distance, stage.cluster, stage.label,
-                      outcome.weight});
+                      outcome.weight, outcome.size});
 }
 
 void RunWriter::writePicture(const FrameOutcome& outcome) {
@@ -149,8 +149,7 @@ void RunWriter::record(const FrameOutcome& outcome) {
   frame.dynamic_points = decision.dynamic;
   frame.suspect_points = decision.suspect;
   frame.unmatched_points = decision.unmatched;
-  frame.static_points =
-      decision.points - decision.dynamic - decision.suspect - decision.unmatched;
+  frame.static_points = decision.points - decision.dynamic - decision.suspect - decision.unmatched;
   frame.boxes = decision.boxes;
   frame.dynamic_boxes = decision.dynamic_boxes;
   if (!outcome.filtered.earlier.empty()) {
@@ -196,8 +195,8 @@ void RunWriter::writeReport(const nlohmann::json& summary, const std::filesystem
   ReportInput input;
   input.title = options.dataset.filename().string();
   input.stages = frameStages();
-  input.frames = evaluated(std::move(report_frames_), groundtruth,
-                           folder_.path() / "trajectory.txt");
+  input.frames =
+      evaluated(std::move(report_frames_), groundtruth, folder_.path() / "trajectory.txt");
   input.loops = std::move(loop_rows_);
   input.pictures = choosePictures(reel_.pictures(), input.frames);
   input.summary = summary;

@@ -72,8 +72,8 @@ std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptio
                                     ? "there is no detector (--detector none)"
                                     : "the detector found no box in any frame"));
   }
-  if (counts.frames_with_distances == 0 && rule != FilterRule::kBox &&
-      rule != FilterRule::kDepthRansac) {
+  if (counts.frames_with_boxes > 0 && counts.frames_with_distances == 0 &&
+      rule != FilterRule::kBox && rule != FilterRule::kDepthRansac) {
     warnings.push_back(asked + "no key point could be matched with an earlier frame");
   }
   return warnings;

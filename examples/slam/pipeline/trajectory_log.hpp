@@ -16,8 +16,7 @@ class TrajectoryLog {
  public:
   void add(double timestamp, const Eigen::Isometry3d& camera_from_world, int key_frame,
            const Map& map) {
-    entries_.push_back(
-        {timestamp, key_frame, camera_from_world * map.poseOf(key_frame).inverse()});
+    entries_.push_back({timestamp, key_frame, camera_from_world * map.poseOf(key_frame).inverse()});
   }
 
   /// The poses as the map has them now.

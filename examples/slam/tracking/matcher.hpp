@@ -9,8 +9,8 @@
 
 #include <hmcdyn/types.hpp>
 
-#include "slam/tracking/frame.hpp"
 #include "slam/mapping/map.hpp"
+#include "slam/tracking/frame.hpp"
 
 namespace hmcdyn::slam {
 

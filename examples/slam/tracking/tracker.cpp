@@ -227,8 +227,8 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
     around = map_.pointsOf(map_.nearestKeyFrames(coarse.refinement.camera_from_world));
   }
 
-  const Estimate fine = estimate(frame, grid, around, coarse.refinement.camera_from_world,
-                                 options_.refined_radius);
+  const Estimate fine =
+      estimate(frame, grid, around, coarse.refinement.camera_from_world, options_.refined_radius);
   if (!fine.refinement.succeeded() || fine.refinement.inliers < options_.min_inliers) {
     return lose();
   }

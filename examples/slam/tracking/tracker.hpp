@@ -58,9 +58,9 @@ struct TrackingResult {
   TrackingFailure failure = TrackingFailure::kNone;
   bool new_key_frame = false;
   bool relocalized = false;  ///< The frame was found again after others were lost.
-  int reference = 0;  ///< Key frame that the pose hangs on: what moves it, moves the pose.
-  std::size_t matches = 0;  ///< Map points matched in the last search.
-  std::size_t inliers = 0;  ///< Those that agree with the pose.
+  int reference = 0;         ///< Key frame that the pose hangs on: what moves it, moves the pose.
+  std::size_t matches = 0;   ///< Map points matched in the last search.
+  std::size_t inliers = 0;   ///< Those that agree with the pose.
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
 };
 

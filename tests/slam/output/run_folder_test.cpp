@@ -218,12 +218,13 @@ TEST_F(RunFolderTest, KeyPointRowsByHand) {
                                        PointLabel::kDynamic};
   const std::vector<float> weights{1.0f, 0.125f, 0.0f};
   KeyPointsWriter writer(file("keypoints.csv"));
-  writer.write(10.0, {points.view(), distances, clusters, labels, weights});
+  const std::vector<float> sizes{31.0f, 37.2f, 111.1f};
+  writer.write(10.0, {points.view(), distances, clusters, labels, weights, sizes});
   EXPECT_EQ(linesOf(file("keypoints.csv")),
-            (std::vector<std::string>{"timestamp,u,v,depth,distance,cluster,label,weight",
-                                      "10.000000,12.500,7.250,1.5000,0.2500,-1,static,1.0000",
-                                      "10.000000,600.000,3.000,0.0000,nan,2,unmatched,0.1250",
-                                      "10.000000,1.000,2.000,nan,3.0000,0,dynamic,0.0000"}));
+            (std::vector<std::string>{"timestamp,u,v,depth,distance,cluster,label,weight,size",
+                                      "10.000000,12.500,7.250,1.5000,0.2500,-1,static,1.0000,31.0",
+                                      "10.000000,600.000,3.000,0.0000,nan,2,unmatched,0.1250,37.2",
+                                      "10.000000,1.000,2.000,nan,3.0000,0,dynamic,0.0000,111.1"}));
 }
 
 TEST_F(RunFolderTest, KeyPointArraysOfUnequalSizeAreRefused) {
@@ -234,12 +235,13 @@ TEST_F(RunFolderTest, KeyPointArraysOfUnequalSizeAreRefused) {
   const std::vector<PointLabel> label{PointLabel::kStatic};
   KeyPointsWriter writer(file("keypoints.csv"));
   EXPECT_EQ(messageOf<std::invalid_argument>([&] {
-              writer.write(1.0, {points.view(), one, none, label, one});
+              writer.write(1.0, {points.view(), one, none, label, one, one});
             }),
-            "key points: 1 points, 1 distances, 0 clusters, 1 labels, 1 weights; "
+            "key points: 1 points, 1 distances, 0 clusters, 1 labels, 1 weights, 1 sizes; "
             "expected equal sizes");
   points.depth.clear();
-  EXPECT_THROW(writer.write(1.0, {points.view(), one, none, label, one}), std::invalid_argument);
+  EXPECT_THROW(writer.write(1.0, {points.view(), one, none, label, one, one}),
+               std::invalid_argument);
 }
 
 TEST_F(RunFolderTest, AFullDiskIsNamed) {
