@@ -5,13 +5,14 @@ set -euo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--check] [--ci]
+Usage: ${0##*/} [--check] [--ci] [--bench]
 
 Installs the packages that hmcdyn needs to be built and tested (Debian, Ubuntu). Does nothing where
 all are installed. Needs root or sudo; without either it says what to install and fails.
 
   --check   only list what is missing; exit code 1 when something is
   --ci      also what .ci/run needs: clang-format, clang-tidy, and Chromium to open the report in
+  --bench   also the peers that the benchmarks measure against: Open3D and PCL
   --help    this text
 USAGE
 }
@@ -30,6 +31,7 @@ for argument in "$@"; do
   case "$argument" in
     --check) only_check=true ;;
     --ci) packages+=(clang-format clang-tidy chromium) ;;
+    --bench) packages+=(libopen3d-dev libpcl-dev python3) ;;
     --help | -h) usage && exit 0 ;;
     *)
       echo "${0##*/}: unknown argument $argument" >&2

@@ -12,6 +12,7 @@ DetectionFeed::DetectionFeed(const SlamOptions& options, const Rectifier& rectif
     : realtime_(options.mode == RunMode::kRealtime),
       boxes_are_raw_(options.detector.type == "file"),
       rectifier_(rectifier),
+      carrier_(options.carrier),
       thread_(makeDetector(options.detector), std::move(report)) {}
 
 std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> boxes) const {
@@ -41,12 +42,17 @@ FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
   } else {
     detection = thread_.take();
   }
+  std::optional<TimedDetection> found;
   if (detection) {
-    result.boxes = rectified(std::move(detection->boxes));
-    result.detected = !detection->failed && detection->frame == frame.raw.index;
     result.detect_wall_ms = detection->wall_ms;
     result.detect_cpu_ms = detection->cpu_ms;
+    if (!detection->failed) {
+      found = TimedDetection{detection->timestamp, rectified(std::move(detection->boxes))};
+    }
   }
+  const StageTimer timer;
+  result.boxes = carrier_.update(frame.image.timestamp, frame.image.gray, frame.image.depth, found);
+  result.carry_time = timer.elapsed("boxes");
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
+#include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detection_thread.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
@@ -23,9 +24,9 @@ struct PreparedFrame {
 /// A frame's boxes, and where they come from.
 struct FrameBoxes {
   std::vector<DetectionBox> boxes;  ///< In the undistorted image.
-  bool detected = false;            ///< By the detector in this very frame; else carried on.
   double detect_wall_ms = 0.0;      ///< Of the detector's thread; 0 without an answer.
   double detect_cpu_ms = 0.0;
+  StageTime carry_time;  ///< Of carrying boxes on, in the calling thread.
 };
 
 /// The boxes of each frame. Offline every frame waits for its own detection; in real time none
@@ -42,6 +43,7 @@ class DetectionFeed {
   FrameBoxes boxesOf(const PreparedFrame& frame);
 
   const DetectionCounts& counts() const noexcept { return thread_.counts(); }
+  const BoxCarrier& carrier() const noexcept { return carrier_; }
   const std::string& detectorName() const noexcept { return thread_.detectorName(); }
 
  private:
@@ -50,6 +52,7 @@ class DetectionFeed {
   bool realtime_;
   bool boxes_are_raw_;  ///< Boxes from a file refer to the image as the camera saw it.
   Rectifier rectifier_;
+  BoxCarrier carrier_;
   DetectionThread thread_;
 };
 

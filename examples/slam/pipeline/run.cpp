@@ -97,6 +97,7 @@ FrameOutcome trackFrame(const PreparedFrame& frame, DetectionFeed& detections, P
   StageTimes before;
   before.add(frame.rectify_time);
   before.add({"detect", boxes.detect_wall_ms, boxes.detect_cpu_ms});
+  before.add(boxes.carry_time);
   FrameOutcome outcome = pipeline.process(frame.image, std::move(boxes.boxes));
   outcome.times.prepend(before);
   return outcome;
@@ -141,6 +142,8 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop) {
   counts.stopped = stop && stop();
   counts.source = source->counts();
   counts.detections = detections.counts();
+  counts.boxes_carried = detections.carrier().carried();
+  counts.boxes_merged = detections.carrier().merged();
   if (!source->failure().empty()) {
     warn(source->failure());
   }

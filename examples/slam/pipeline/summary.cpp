@@ -142,6 +142,8 @@ nlohmann::json toJson(const SlamOptions& options, const std::string& detector_na
           {"classes", options.detector.classes},
           {"score_threshold", options.detector.score_threshold},
           {"nms_threshold", options.detector.nms_threshold},
+          {"bridge_s", options.carrier.max_age},
+          {"mode", options.mode == RunMode::kOffline ? "offline" : "realtime"},
           {"filter", hmcdyn::toString(stage.rule)},
           {"soft_weights", options.filter.soft_weights},
           {"baselines_s", options.filter.baselines},
@@ -192,6 +194,8 @@ nlohmann::json toJson(const RunCounts& counts) {
             {"detected", counts.detections.detected},
             {"replaced", counts.detections.replaced},
             {"failed", counts.detections.failed}}},
+          {"boxes_carried", counts.boxes_carried},
+          {"boxes_merged", counts.boxes_merged},
           {"dense_map_points", counts.map_points},
           {"stopped_by_signal", counts.stopped}};
 }

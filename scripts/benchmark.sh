@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Measures every kernel against its peers in one process each, and writes docs/benchmarks.md.
+set -euo pipefail
+
+usage() {
+  cat <<USAGE
+Usage: ${0##*/} [--no-install] [--quick] [--no-o2] [--output FILE]
+
+Builds the bench preset (-O3 -march=x86-64-v3) and a plain -O2 build, runs all benchmarks with random
+interleaving, and writes tables of medians with ratios to the peers, and a plot of time against N.
+Some 15 minutes on 2 cores. Nothing else should run on the machine meanwhile.
+
+  --no-install   do not install missing packages, nor the optional peers (Open3D, PCL)
+  --quick        3 repetitions instead of 9, up to 100 000 points: for trying the script
+  --no-o2        without the plain -O2 build
+  --output FILE  the page to write (default: docs/benchmarks.md)
+  --help         this text
+USAGE
+}
+
+usage_error() {
+  echo "${0##*/}: $1" >&2
+  usage >&2
+  exit 2
+}
+
+install=true
+quick=false
+plain=true
+output=
+while (($# > 0)); do
+  case "$1" in
+    --no-install) install=false ;;
+    --quick) quick=true ;;
+    --no-o2) plain=false ;;
+    --output)
+      (($# > 1)) || usage_error "--output needs a value"
+      output=$(realpath -m "$2")
+      shift
+      ;;
+    --help | -h) usage && exit 0 ;;
+    *) usage_error "unknown argument $1" ;;
+  esac
+  shift
+done
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+output=${output:-$PWD/docs/benchmarks.md}
+command -v python3 >/dev/null || usage_error "python3 is missing; it makes the tables"
+
+if $install; then
+  scripts/install_dependencies.sh --bench
+fi
+repetitions=9
+most='' # a regular expression of benchmarks that are left out
+if $quick; then
+  repetitions=3
+  most='-clustering/(316228|1000000)/'
+fi
+benches=(bench_clustering bench_epipolar bench_filter_stage bench_pose_refinement)
+export OMP_NUM_THREADS=1 # Open3D and PCL would take all cores
+
+# build FOLDER CMAKE_ARGUMENT...
+build() {
+  local folder=$1
+  shift
+  echo "== Building $folder"
+  cmake "$@" -DHMCDYN_BUILD_TESTS=OFF >/dev/null
+  cmake --build "$folder" --parallel "$(nproc)" --target "${benches[@]}" >/dev/null
+}
+
+# run FOLDER: results in FOLDER/results/NAME.json
+run() {
+  local folder=$1 start=$SECONDS
+  mkdir -p "$folder/results"
+  for bench in "${benches[@]}"; do
+    printf '== Running %s in %s ...' "$bench" "$folder"
+    "$folder/bin/$bench" --benchmark_enable_random_interleaving=true \
+      --benchmark_repetitions=$repetitions --benchmark_min_time=0.02 \
+      ${most:+--benchmark_filter="$most"} --benchmark_out="$folder/results/$bench.json" \
+      --benchmark_out_format=json >"$folder/results/$bench.log" 2>&1 ||
+      {
+        tail -n 5 "$folder/results/$bench.log" >&2
+        exit 1
+      }
+    echo " $((SECONDS - start)) s so far"
+  done
+}
+
+build build/bench --preset bench
+run build/bench
+folders=(build/bench)
+if $plain; then
+  build build/bench-o2 -S . -B build/bench-o2 -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_CXX_FLAGS_RELEASE="-O2 -DNDEBUG" -DHMCDYN_BUILD_BENCHMARKS=ON \
+    -DHMCDYN_BUILD_EXAMPLES=OFF
+  run build/bench-o2
+  folders+=(build/bench-o2)
+fi
+python3 scripts/benchmark_page.py --output "$output" --notes docs/benchmarks_notes.md "${folders[@]}"
+echo "Wrote $output"
