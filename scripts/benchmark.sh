@@ -61,7 +61,7 @@ for program in "${programs[@]}"; do
     --benchmark_min_time=0.05 --benchmark_out="$results/$program.json" \
     --benchmark_out_format=json >/dev/null
 done
-machine="$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1), $(nproc) cores; $(c++ --version | head -1); $(date -u +%F)"
+machine="$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1), $(getconf _NPROCESSORS_ONLN) cores; $(c++ --version | head -1); $(date -u +%F)"
 python3 scripts/benchmark_report.py "$results" --machine "$machine" \
   --command "scripts/benchmark.sh --repetitions $repetitions --filter $filter" \
   --notes docs/benchmarks_notes.md >docs/benchmarks.md
