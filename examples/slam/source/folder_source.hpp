@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slam/camera/calibration.hpp"
+#include "slam/dataset/tum_dataset.hpp"
+#include "slam/source/frame_source.hpp"
+
+namespace hmcdyn::slam {
+
+/// The frames of a folder in TUM format, as listFrames() gives them.
+class TumFolderSource final : public RecordedSource {
+ public:
+  /// @param report takes a line for each frame that cannot be read.
+  /// @throws std::runtime_error as listFrames().
+  TumFolderSource(const std::filesystem::path& folder, const DatasetOptions& options,
+                  const CameraCalibration& calibration, Report report);
+
+  /// Ends after so many entries of the list; 0 = all.
+  void limit(std::size_t max_frames);
+
+  std::optional<RgbdFrame> next() override;
+  std::optional<std::size_t> expectedFrames() const override { return entries_.size(); }
+  std::string name() const override;
+  SourceCounts counts() const override { return counts_; }
+
+  std::optional<double> nextTimestamp() const override { return timestampAt(position_); }
+  std::optional<double> timestampAfterNext() const override { return timestampAt(position_ + 1); }
+  void skip() override;
+
+ private:
+  std::optional<double> timestampAt(std::size_t position) const;
+
+  std::filesystem::path folder_;
+  std::vector<FrameEntry> entries_;
+  CameraCalibration calibration_;
+  Report report_;
+  std::size_t position_ = 0;  ///< Of the next entry.
+  SourceCounts counts_;
+};
+
+}  // namespace hmcdyn::slam
