@@ -76,10 +76,10 @@ std::optional<Detection> DetectionThread::tryTakeNewest() {
 Detection DetectionThread::account(Answer answer) {
   if (answer.detection.failed) {
     if (++counts_.failed == 1) {
-      report_(fmt::format(
-          "detector {}: failed at frame {}, which goes without its boxes: {}; further "
-          "failures are only counted",
-          name_, answer.detection.frame, answer.error));
+      report_(
+          fmt::format("detector {}: failed at frame {}, which goes without its boxes: {}; further "
+                      "failures are only counted",
+                      name_, answer.detection.frame, answer.error));
     }
   } else {
     ++counts_.detected;

@@ -71,9 +71,8 @@ const Backend& findBackend(const std::string& name) {
       return backend;
     }
   }
-  throw std::invalid_argument(
-      fmt::format("depth camera '{}' is unknown; expected one of {}", name,
-                  fmt::join(depthCameraBackends(), ", ")));
+  throw std::invalid_argument(fmt::format("depth camera '{}' is unknown; expected one of {}", name,
+                                          fmt::join(depthCameraBackends(), ", ")));
 }
 
 std::string cameraBackendsOfOpenCv() {

@@ -59,8 +59,8 @@ std::optional<RgbdFrame> RealtimePacer::next() {
     return source_->next();
   }
   const double now = clock_->now();
-  for (std::optional<double> after = source_->timestampAfterNext();
-       after && dueTime(*after) <= now; after = source_->timestampAfterNext()) {
+  for (std::optional<double> after = source_->timestampAfterNext(); after && dueTime(*after) <= now;
+       after = source_->timestampAfterNext()) {
     source_->skip();
     timestamp = after;
   }
