@@ -16,6 +16,10 @@
 namespace hmcdyn {
 namespace {
 
+cv::Size imageSize(const FlowPyramid& pyramid) {
+  return pyramid.empty() ? cv::Size() : pyramid.front().size();
+}
+
 void checkInput(const DynamicFeatureFilterInput& input,
                 const DynamicFeatureFilterOptions& options) {
   if (input.pyramid == nullptr) {
@@ -23,9 +27,18 @@ void checkInput(const DynamicFeatureFilterInput& input,
   }
   if (options.flow_background < 0 || options.flow_in_boxes < 0 || !(options.flow_margin >= 0.0f)) {
     throw std::invalid_argument("DynamicFeatureFilterOptions: flow_background is " +
-                                std::to_string(options.flow_background) + ", flow_margin " +
+                                std::to_string(options.flow_background) + ", flow_in_boxes " +
+                                std::to_string(options.flow_in_boxes) + ", flow_margin " +
                                 std::to_string(options.flow_margin) +
-                                "; expected a count and a margin (px) >= 0");
+                                "; expected counts and a margin (px) >= 0");
+  }
+  const cv::Size image = imageSize(*input.pyramid);
+  const bool depth_fits = input.depth.width == image.width && input.depth.height == image.height;
+  if (!input.depth.empty() && !input.pyramid->empty() && !depth_fits) {
+    throw std::invalid_argument("filterDynamicFeatures: depth is " +
+                                std::to_string(input.depth.width) + " x " +
+                                std::to_string(input.depth.height) + " px; expected the image's " +
+                                std::to_string(image.width) + " x " + std::to_string(image.height));
   }
   for (const EarlierFrame& frame : input.earlier) {
     if (frame.pyramid == nullptr) {
@@ -161,10 +174,6 @@ EarlierFrameReport compareWith(const EarlierFrame& frame, const FlowMatches& gue
     keepLarger(egoMotionDistancesTo(frame, pairs, input, options.ego_motion), distance);
   }
   return report;
-}
-
-cv::Size imageSize(const FlowPyramid& pyramid) {
-  return pyramid.empty() ? cv::Size() : pyramid.front().size();
 }
 
 /// Steps 4 to 7 on the chosen points. The others in a dynamic box are unmatched, until the chosen

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,231 +11,488 @@
 #include <hmcdyn/motion_belief.hpp>
 
 #include "invalid_argument.hpp"
+#include "random.hpp"
 
 namespace hmcdyn {
 namespace {
 
-/// Points of a frame, each told in one line.
-struct Scene {
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Every option set. At 2 m the depth reach is 0.03 + 0.02 * 4 = 0.11 m.
+MotionBeliefOptions fixedOptions() {
+  MotionBeliefOptions options;
+  options.sigma = 80.0f;
+  options.memory_sigma = 24.0f;
+  options.depth_sigma_floor = 0.03f;
+  options.depth_sigma_quadratic = 0.02f;
+  options.still_distance = 0.3f;
+  options.moving_distance = 1.0f;
+  options.dynamic_evidence = 0.5f;
+  options.quiet_weight = 0.3f;
+  options.inferred_weight = 0.3f;
+  options.dragged_weight = 0.05f;
+  options.unmeasured_depth = 9.0f;
+  options.min_weight = 0.2f;
+  options.memory_gain = 2.0f;
+  options.memory_decay = 0.9f;
+  options.weight_cap = 20.0f;
+  options.dynamic_belief = 0.6f;
+  return options;
+}
+
+/// A frame's points, each with all that it is judged by.
+struct Frame {
   KeyPoints points;
   std::vector<float> distance;
   std::vector<PointLabel> label;
   std::vector<std::uint8_t> in_box;
-  std::vector<SurfaceSupport> support;
-  std::vector<std::uint8_t> is_dragged;
+  std::vector<float> earlier_u;
+  std::vector<float> earlier_v;
+  SurfaceDepths surface;
 
-  std::size_t add(float u, float v, float depth, float d, bool boxed = true,
-                  PointLabel verdict = PointLabel::kSuspect, bool dragged = false,
-                  SurfaceSupport known = SurfaceSupport::kMeasured) {
+  /// A measured point in a box that was where it is.
+  Frame& add(float u, float v, float depth, float at_distance) {
     points.push_back(u, v, depth);
-    distance.push_back(d);
-    label.push_back(verdict);
-    in_box.push_back(boxed ? 1 : 0);
-    support.push_back(known);
-    is_dragged.push_back(dragged ? 1 : 0);
-    return points.size() - 1;
+    distance.push_back(at_distance);
+    label.push_back(PointLabel::kSuspect);
+    in_box.push_back(1);
+    earlier_u.push_back(u);
+    earlier_v.push_back(v);
+    surface.depth.push_back(depth);
+    surface.support.push_back(SurfaceSupport::kMeasured);
+    surface.is_dragged.push_back(0);
+    return *this;
+  }
+  Frame& add(int count, float u, float v, float depth, float at_distance) {
+    for (int k = 0; k < count; ++k) {
+      add(u, v, depth, at_distance);
+    }
+    return *this;
+  }
+  Frame& support(SurfaceSupport of_last) {
+    surface.support.back() = of_last;
+    if (of_last == SurfaceSupport::kBeside || of_last == SurfaceSupport::kNone) {
+      surface.depth.back() = 0.0f;
+    }
+    return *this;
+  }
+  Frame& dragged() {
+    surface.is_dragged.back() = 1;
+    return *this;
+  }
+  Frame& outsideBoxes() {
+    in_box.assign(points.size(), 0);
+    return *this;
   }
 
-  MotionBelief vote(const MotionBelief& memory = {},
-                    const MotionBeliefOptions& options = {}) const {
-    MotionBeliefWorkspace workspace;
-    workspace.surface.depth = points.depth;
-    workspace.surface.support = support;
-    workspace.surface.is_dragged = is_dragged;
-    const MotionBeliefInput input{points.view(), distance, label, in_box, {}, {}};
-    return updateMotionBelief(input, memory, options, workspace);
+  MotionBeliefInput input() const {
+    return {points.view(), distance, label, in_box, earlier_u, earlier_v};
   }
 };
 
-/// A grid of points on one surface.
-void addSurface(Scene& scene, float u, float v, float depth, float d, int side, float step,
-                bool boxed = true) {
-  for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      scene.add(u + step * static_cast<float>(column), v + step * static_cast<float>(row), depth, d,
-                boxed);
+MotionBelief update(const Frame& frame, const MotionBelief& memory = {},
+                    const MotionBeliefOptions& options = fixedOptions()) {
+  MotionBeliefWorkspace workspace;
+  workspace.surface = frame.surface;
+  return updateMotionBelief(frame.input(), memory, options, workspace);
+}
+
+/// The kernel's closed form.
+double kernel(double q) { return std::pow(std::max(0.0, 1.0 - q / 8.0), 4); }
+
+TEST(MotionBelief, TwoPointsListenToEachOther) {
+  // Given one that moves (vote 1, weight 1) and one at rest (vote 0, weight 0.3), sigma apart:
+  // (1 - 1/8)^4 = 0.586182
+  const MotionBelief belief = update(Frame().add(100, 50, 2.0f, 2.0f).add(180, 50, 2.0f, 0.1f));
+  EXPECT_NEAR(belief.belief[0], 1.0 / (1.0 + 0.3 * 0.586182), 1e-5);
+  EXPECT_NEAR(belief.belief[1], 0.586182 / (0.586182 + 0.3), 1e-5);
+  EXPECT_NEAR(belief.weight[0], 0.9 * (1.0 + 0.3 * 0.586182) / 20.0, 1e-6);
+  EXPECT_NEAR(belief.weight[1], 0.9 * (0.586182 + 0.3) / 20.0, 1e-6);
+}
+
+TEST(MotionBelief, DepthSeparatesAsTheImageDoes) {
+  // Given the same two, and a depth reach apart as well: (1 - 2/8)^4 = 0.31640625 at 2 m, and by
+  // the reach of 0.03 + 0.02 * 2.11^2 = 0.119042 m at 2.11 m.
+  const MotionBelief belief = update(Frame().add(100, 50, 2.0f, 2.0f).add(180, 50, 2.11f, 0.1f));
+  EXPECT_NEAR(belief.belief[0], 1.0 / (1.0 + 0.3 * 0.31640625), 1e-4);
+  const double back = kernel(1.0 + std::pow(0.11 / 0.119042, 2));
+  EXPECT_NEAR(belief.belief[1], back / (back + 0.3), 1e-4);
+}
+
+TEST(MotionBelief, BeyondItsReachAVoteDoesNotCount) {
+  // Given sqrt(8) sigma = 226.27 px
+  EXPECT_EQ(update(Frame().add(0, 50, 2.0f, 2.0f).add(227, 50, 2.0f, 0.1f)).belief[1], 0.0f);
+  EXPECT_GT(update(Frame().add(0, 50, 2.0f, 2.0f).add(200, 50, 2.0f, 0.1f)).belief[1], 0.0f);
+  // ... and sqrt(8) * 0.11 = 0.311 m
+  EXPECT_EQ(update(Frame().add(0, 50, 2.0f, 2.0f).add(0, 50, 2.4f, 0.1f)).belief[0], 1.0f);
+}
+
+TEST(MotionBelief, AloneAPointIsWhatItsDistanceSays) {
+  const auto alone = [](float distance, PointLabel label) {
+    Frame frame;
+    frame.add(100, 50, 2.0f, distance);
+    frame.label[0] = label;
+    return update(frame).belief[0];
+  };
+  EXPECT_FLOAT_EQ(alone(0.1f, PointLabel::kSuspect), 0.0f);
+  EXPECT_FLOAT_EQ(alone(0.3f, PointLabel::kSuspect), 0.0f);
+  EXPECT_NEAR(alone(0.65f, PointLabel::kSuspect), 0.5, 1e-6);
+  EXPECT_FLOAT_EQ(alone(1.0f, PointLabel::kSuspect), 1.0f);
+  EXPECT_FLOAT_EQ(alone(kInfinity, PointLabel::kSuspect), 1.0f);
+  // A dynamic cluster's quiet point counts with at least a half.
+  EXPECT_FLOAT_EQ(alone(0.1f, PointLabel::kDynamic), 0.5f);
+  EXPECT_FLOAT_EQ(alone(1.0f, PointLabel::kDynamic), 1.0f);
+}
+
+TEST(MotionBelief, ADraggedCornerIsOutvotedByItsWall) {
+  // Given six points of a wall at rest, 40 px around a corner that the person before it drags
+  Frame frame;
+  frame.add(6, 140, 50, 4.0f, 0.1f).add(100, 50, 4.0f, 3.0f).dragged();
+  frame.add(6, 95, 50, 2.0f, 3.0f);
+  const MotionBelief belief = update(frame);
+
+  // Then the corner is believed at rest: (1 - 0.25/8)^4 = 0.880748
+  EXPECT_NEAR(belief.belief[6], 0.05 / (0.05 + 6 * 0.3 * 0.880748), 1e-5);
+  EXPECT_EQ(belief.weight[6], 0.0f);  // and no memory of it is kept
+  EXPECT_NEAR(belief.belief[7], 1.0, 1e-6);
+
+  // Without the flow's drag known, it would not have been.
+  frame.surface.is_dragged[6] = 0;
+  EXPECT_NEAR(update(frame).belief[6], 1.0 / (1.0 + 6 * 0.3 * 0.880748), 1e-5);
+}
+
+TEST(MotionBelief, AStillArmGoesWithItsBody) {
+  // Given eight moving points of a body 30 px from an arm at rest
+  const MotionBelief belief = update(Frame().add(8, 100, 50, 2.0f, 2.0f).add(130, 50, 2.0f, 0.1f));
+  const double votes = 8 * kernel(30.0 * 30.0 / 6400.0);
+  EXPECT_NEAR(belief.belief[8], votes / (votes + 0.3), 1e-5);
+  EXPECT_GT(belief.belief[8], fixedOptions().dynamic_belief);
+}
+
+TEST(MotionBelief, WhoPausesStaysDynamicForThreeFrames) {
+  // Given 20 points of a person that moved: certain, 0.9 after the decay
+  const Frame moving = Frame().add(20, 100, 50, 2.0f, 2.0f);
+  const Frame resting = Frame().add(20, 100, 50, 2.0f, 0.0f);
+  MotionBelief belief = update(moving);
+  EXPECT_NEAR(belief.belief[0], 1.0, 1e-6);
+  EXPECT_NEAR(belief.weight[0], 0.9, 1e-6);
+
+  // When they rest, each frame weighs a memory of 2 * 20 * 0.9 = 36 against 20 * 0.3 = 6:
+  // 6/7 is left, and (6/7)^3 = 0.63, (6/7)^4 = 0.54.
+  std::vector<bool> is_dynamic;
+  for (int k = 1; k <= 5; ++k) {
+    belief = update(resting, belief);
+    EXPECT_NEAR(belief.belief[0], std::pow(6.0 / 7.0, k), 1e-5) << "frame " << k;
+    is_dynamic.push_back(belief.belief[0] > fixedOptions().dynamic_belief);
+  }
+  EXPECT_EQ(is_dynamic, (std::vector<bool>{true, true, true, false, false}));
+}
+
+TEST(MotionBelief, AWallMisjudgedOnceRecovers) {
+  // Given a wall outside the boxes that was believed to move
+  MotionBelief belief = update(Frame().add(20, 100, 50, 2.0f, 2.0f));
+  const Frame wall = Frame().add(20, 100, 50, 2.0f, 0.0f).outsideBoxes();
+
+  // Then rest weighs 20 against 36 there: 9/14 = 0.643 is dynamic, its square is not, ...
+  belief = update(wall, belief);
+  EXPECT_NEAR(belief.belief[0], 9.0 / 14.0, 1e-5);
+  belief = update(wall, belief);
+  EXPECT_NEAR(belief.belief[0], 81.0 / 196.0, 1e-5);
+  // ... and what is not believed to move outside the boxes is at rest again.
+  belief = update(wall, belief);
+  EXPECT_EQ(belief.belief[0], 0.0f);
+  EXPECT_NEAR(belief.weight[0], 0.9, 1e-6);
+}
+
+TEST(MotionBelief, AMissedDetectionIsBridged) {
+  // Given a person that moved in a box, and then moves on without one, beside a wall 200 px off
+  const MotionBelief memory = update(Frame().add(20, 100, 50, 2.0f, 2.0f));
+  const Frame missed =
+      Frame().add(20, 100, 50, 2.0f, 2.0f).add(5, 300, 50, 2.0f, 2.0f).outsideBoxes();
+  const MotionBelief belief = update(missed, memory);
+  EXPECT_NEAR(belief.belief[0], 1.0, 1e-6);
+  EXPECT_EQ(belief.belief[20], 0.0f);  // a wrong match far from all that moved
+  // Without the memory nobody would be concerned.
+  EXPECT_EQ(update(missed).belief[0], 0.0f);
+}
+
+TEST(MotionBelief, TheMemoryIsReadWhereThePointWas) {
+  // Given a person that walked 100 px since, and rests now; the memory reaches 68 px.
+  const MotionBelief memory = update(Frame().add(20, 100, 50, 2.0f, 2.0f));
+  Frame resting = Frame().add(20, 200, 50, 2.0f, 0.0f);
+  EXPECT_EQ(update(resting, memory).belief[0], 0.0f);
+  resting.earlier_u.assign(20, 100.0f);
+  EXPECT_NEAR(update(resting, memory).belief[0], 6.0 / 7.0, 1e-5);
+  // What is lost is looked for where it is now; without matches, all are.
+  resting.earlier_v.assign(20, kNaN);
+  EXPECT_EQ(update(resting, memory).belief[0], 0.0f);
+  resting.earlier_u.clear();
+  resting.earlier_v.clear();
+  EXPECT_EQ(update(resting, memory).belief[0], 0.0f);
+}
+
+TEST(MotionBelief, MuchMemoryWeighsNoMoreThanItsCap) {
+  // Given 40 points of weight 0.9: 36 full votes, cut to 20, times 2 against 40 * 0.3
+  const MotionBelief memory = update(Frame().add(40, 100, 50, 2.0f, 2.0f));
+  EXPECT_NEAR(update(Frame().add(40, 100, 50, 2.0f, 0.0f), memory).belief[0], 40.0 / 52.0, 1e-5);
+  MotionBeliefOptions without = fixedOptions();
+  without.memory_gain = 0.0f;
+  EXPECT_EQ(update(Frame().add(40, 100, 50, 2.0f, 0.0f), memory, without).belief[0], 0.0f);
+}
+
+TEST(MotionBelief, PointsOutOfRangeVoteAmongThemselves) {
+  // Given a moving person before a wall that is too far to be measured
+  Frame frame;
+  frame.add(4, 100, 50, 2.0f, 2.0f);
+  frame.add(100, 50, 0.0f, 0.1f).support(SurfaceSupport::kNone);
+  frame.add(180, 50, 0.0f, 0.65f).support(SurfaceSupport::kNone);
+  const MotionBelief belief = update(frame);
+  EXPECT_EQ(belief.depth[4], 9.0f);
+  EXPECT_NEAR(belief.belief[0], 1.0, 1e-6);
+  // Votes 0 with weight 0.3, and 0.5 with 0.3 + 0.7 * 0.5 = 0.65; sigma apart
+  EXPECT_NEAR(belief.belief[4], 0.586182 * 0.325 / (0.3 + 0.586182 * 0.65), 1e-5);
+}
+
+TEST(MotionBelief, AMeasuredSurfaceAsDeepAsTheUnmeasuredVotesWithThem) {
+  Frame frame;
+  frame.add(100, 50, 0.0f, 0.1f).support(SurfaceSupport::kNone);
+  frame.add(100, 50, 9.0f, 2.0f);
+  const MotionBelief belief = update(frame);
+  EXPECT_NEAR(belief.belief[0], 1.0 / 1.3, 1e-6);
+  EXPECT_NEAR(belief.belief[1], 1.0 / 1.3, 1e-6);
+}
+
+TEST(MotionBelief, OnAnUnknownSurfaceNothingIsKnown) {
+  Frame frame;
+  frame.add(100, 50, 2.0f, 0.1f)
+      .add(100, 50, 0.0f, 3.0f)
+      .support(SurfaceSupport::kBeside)
+      .dragged();
+  const MotionBelief belief = update(frame);
+  EXPECT_EQ(belief.belief[0], 0.0f);
+  EXPECT_TRUE(std::isnan(belief.belief[1]));
+  EXPECT_EQ(belief.weight[1], 0.0f);
+}
+
+TEST(MotionBelief, InferredDepthsCountLess) {
+  for (const SurfaceSupport support : {SurfaceSupport::kEnclosed, SurfaceSupport::kBehind}) {
+    Frame frame;
+    frame.add(100, 50, 2.0f, 0.1f).add(100, 50, 2.0f, 3.0f).support(support);
+    EXPECT_NEAR(update(frame).belief[0], 0.3 / (0.3 + 0.3), 1e-6) << toString(support);
+  }
+}
+
+TEST(MotionBelief, WithoutVotesNothingIsKnown) {
+  EXPECT_EQ(update(Frame()).size(), 0U);
+  const MotionBelief belief = update(Frame().add(100, 50, 2.0f, kNaN).add(110, 50, 2.0f, kNaN));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_TRUE(std::isnan(belief.belief[i]));
+    EXPECT_EQ(belief.weight[i], 0.0f);
+  }
+  // Votes of 0.3 leave a point judged, half of that does not.
+  MotionBeliefOptions options = fixedOptions();
+  options.quiet_weight = 0.19f;
+  EXPECT_TRUE(std::isnan(update(Frame().add(100, 50, 2.0f, 0.1f), {}, options).belief[0]));
+  options.quiet_weight = 0.21f;
+  EXPECT_EQ(update(Frame().add(100, 50, 2.0f, 0.1f), {}, options).belief[0], 0.0f);
+}
+
+TEST(MotionBelief, APointWithoutADistanceIsJudgedByItsNeighbours) {
+  const MotionBelief belief = update(Frame().add(100, 50, 2.0f, 3.0f).add(110, 50, 2.0f, kNaN));
+  EXPECT_NEAR(belief.belief[1], 1.0, 1e-6);
+}
+
+TEST(MotionBelief, PointsWithoutAPixelTakeNoPart) {
+  // Given a frame with a point that is nowhere, and the next
+  for (const float nowhere : {kNaN, kInfinity}) {
+    Frame frame;
+    frame.add(100, 50, 2.0f, 2.0f).add(nowhere, 50, 2.0f, 2.0f).add(100, nowhere, 2.0f, 2.0f);
+    frame.support(SurfaceSupport::kNone);
+    frame.in_box = {1, 0, 1};
+    const MotionBelief belief = update(frame);
+    EXPECT_NEAR(belief.belief[0], 1.0, 1e-6);
+    EXPECT_NEAR(belief.weight[0], 0.9 / 20.0, 1e-6);
+    for (const std::size_t i : {1U, 2U}) {
+      EXPECT_TRUE(std::isnan(belief.belief[i]));
+      EXPECT_EQ(belief.weight[i], 0.0f);
+    }
+    // Then a memory with such a point is the memory of the others.
+    MotionBelief spoilt = belief;
+    spoilt.belief[1] = 1.0f;
+    spoilt.weight[1] = 1.0f;
+    spoilt.depth[0] = kInfinity;
+    EXPECT_EQ(update(Frame().add(100, 50, 2.0f, 0.1f), spoilt).belief[0], 0.0f) << nowhere;
+    spoilt.depth[0] = 2.0f;
+    const double memory = 2.0 * 0.045;
+    EXPECT_NEAR(update(Frame().add(100, 50, 2.0f, 0.1f), spoilt).belief[0], memory / (memory + 0.3),
+                1e-5);
+  }
+}
+
+/// A frame drawn at random, the points in a given order and moved by (du, dv).
+Frame drawn(const std::vector<int>& order, float du, float dv) {
+  test::Random random(17);
+  Frame all;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    all.add(random.uniformFloat(0, 640) + du, random.uniformFloat(0, 480) + dv,
+            random.uniformFloat(1, 5), random.uniformFloat(0, 2));
+    all.in_box.back() = random.chance(0.7) ? 1 : 0;
+    if (random.chance(0.2)) {
+      all.support(SurfaceSupport::kNone);
+    } else if (random.chance(0.2)) {
+      all.support(SurfaceSupport::kBehind).dragged();
+    }
+    if (random.chance(0.1)) {
+      all.distance.back() = kNaN;
+    }
+  }
+  Frame frame;
+  for (const int index : order) {
+    const auto i = static_cast<std::size_t>(index);
+    frame.add(all.points.u[i], all.points.v[i], all.surface.depth[i], all.distance[i]);
+    frame.surface.support.back() = all.surface.support[i];
+    frame.surface.is_dragged.back() = all.surface.is_dragged[i];
+    frame.in_box.back() = all.in_box[i];
+  }
+  return frame;
+}
+
+/// Two frames' beliefs, the first being the memory of the second.
+MotionBelief beliefOf(const std::vector<int>& order, float du, float dv) {
+  const Frame frame = drawn(order, du, dv);
+  return update(frame, update(frame));
+}
+
+void expectNear(const MotionBelief& actual, const MotionBelief& expected,
+                const std::vector<int>& order) {
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const auto i = static_cast<std::size_t>(order[k]);
+    EXPECT_EQ(std::isnan(actual.belief[k]), std::isnan(expected.belief[i])) << "point " << i;
+    if (!std::isnan(expected.belief[i])) {
+      EXPECT_NEAR(actual.belief[k], expected.belief[i], 1e-4) << "point " << i;
+      EXPECT_NEAR(actual.weight[k], expected.weight[i], 1e-4) << "point " << i;
     }
   }
 }
 
-TEST(MotionBelief, TwoPointsVoteByTheKernelsClosedForm) {
-  // Given a point that moves (votes 1 with weight 1) and one at rest (0 with weight 0.3), 80 px
-  // apart on one surface: q = (80 / 80)^2 = 1, kernel (1 - 1/8)^4
-  Scene scene;
-  const std::size_t moving = scene.add(100.0f, 100.0f, 2.0f, 3.0f);
-  const std::size_t resting = scene.add(180.0f, 100.0f, 2.0f, 0.0f);
-  const double kernel = std::pow(0.875, 4.0);
-  // When they vote, then each belief is the weighted mean.
-  const MotionBelief belief = scene.vote();
-  EXPECT_NEAR(belief.belief[moving], 1.0 / (1.0 + 0.3 * kernel), 1e-6);
-  EXPECT_NEAR(belief.belief[resting], kernel / (kernel + 0.3), 1e-6);
-  // Weights: the sum over the cap of 20, decayed by 0.9.
-  EXPECT_NEAR(belief.weight[moving], 0.9 * (1.0 + 0.3 * kernel) / 20.0, 1e-6);
-}
+class MotionBeliefProperties : public testing::Test {
+ protected:
+  MotionBeliefProperties() : order(300) { std::iota(order.begin(), order.end(), 0); }
+  std::vector<int> order;
+};
 
-TEST(MotionBelief, DepthSeparatesNeighbours) {
-  // At 2.45 m depth_sigma = 0.03 + 0.02 * 2.45^2 = 0.15 m; 0.45 m are beyond 2.83 of it.
-  Scene scene;
-  scene.add(100.0f, 100.0f, 2.0f, 3.0f);
-  const std::size_t wall = scene.add(101.0f, 100.0f, 2.45f, 0.0f);
-  EXPECT_FLOAT_EQ(scene.vote().belief[wall], 0.0f);
-}
-
-TEST(MotionBelief, ADraggedCornerIsOutvotedByItsWall) {
-  Scene scene;
-  addSurface(scene, 100.0f, 100.0f, 3.0f, 0.1f, 4, 12.0f);
-  const std::size_t corner = scene.add(95.0f, 118.0f, 3.0f, 6.0f, true, PointLabel::kDynamic, true);
-  const MotionBelief belief = scene.vote();
-  EXPECT_LT(belief.belief[corner], 0.1f);
-  EXPECT_FLOAT_EQ(belief.weight[corner], 0.0f) << "what a corner at an edge believes is not kept";
-}
-
-TEST(MotionBelief, AStillArmMovesWithItsBody) {
-  Scene scene;
-  addSurface(scene, 100.0f, 100.0f, 2.0f, 3.0f, 4, 12.0f);
-  const std::size_t arm = scene.add(150.0f, 120.0f, 2.05f, 0.1f);
-  EXPECT_GT(scene.vote().belief[arm], 0.8f);
-}
-
-TEST(MotionBelief, APersonWhoPausesIsReleasedWhenTheOptionsSaySo) {
-  // Given one point (a surface of one) that moved with a memory of full weight
-  MotionBeliefOptions options;
-  options.min_weight = 0.01f;
-  Scene moving;
-  moving.add(100.0f, 100.0f, 2.0f, 3.0f);
-  MotionBelief memory = moving.vote({}, options);
-  memory.weight[0] = 0.9f;
-  Scene resting;
-  resting.add(100.0f, 100.0f, 2.0f, 0.0f);
-  // When it rests, then each frame b <- (2 w b) / (2 w + 0.3), w <- 0.9 (2 w + 0.3) / 20.
-  double belief = 1.0;
-  double weight = 0.9;
-  int frames = 0;
-  int expected = -1;
-  for (int frame = 0; frame < 6; ++frame) {
-    belief = 2.0 * weight * belief / (2.0 * weight + 0.3);
-    weight = 0.9 * std::min(1.0, (2.0 * weight + 0.3) / 20.0);
-    expected = expected < 0 && belief <= 0.6 ? frame : expected;
-    memory = resting.vote(memory, options);
-    EXPECT_NEAR(memory.belief[0], belief, 1e-4) << "frame " << frame;
-    frames += memory.belief[0] > options.dynamic_belief ? 1 : 0;
+TEST_F(MotionBeliefProperties, TheOrderOfThePointsDoesNotMatter) {
+  const MotionBelief expected = beliefOf(order, 0.0f, 0.0f);
+  std::vector<int> shuffled = order;
+  test::Random random(3);
+  for (int k = static_cast<int>(order.size()) - 1; k > 0; --k) {
+    std::swap(shuffled[static_cast<std::size_t>(k)],
+              shuffled[static_cast<std::size_t>(random.integer(0, k))]);
   }
-  EXPECT_EQ(frames, expected);
-  EXPECT_GE(frames, 1) << "not trusted at once";
-  EXPECT_LT(frames, 6) << "but in the end";
+  expectNear(beliefOf(shuffled, 0.0f, 0.0f), expected, shuffled);
 }
 
-TEST(MotionBelief, AWallThatWasMisjudgedOnceRecovers) {
-  Scene wrong;
-  addSurface(wrong, 100.0f, 100.0f, 3.0f, 2.0f, 4, 12.0f);
-  MotionBelief memory = wrong.vote();
-  EXPECT_GT(memory.belief[0], 0.9f);
-  Scene right;
-  addSurface(right, 100.0f, 100.0f, 3.0f, 0.1f, 4, 12.0f);
-  int frames = 0;
-  while (memory.belief[0] > 0.6f && frames < 100) {
-    memory = right.vote(memory);
-    ++frames;
-  }
-  EXPECT_LE(frames, 15) << "half a second";
+TEST_F(MotionBeliefProperties, TheFrameMayMoveInTheImage) {
+  expectNear(beliefOf(order, 64.0f, -32.0f), beliefOf(order, 0.0f, 0.0f), order);
 }
 
-TEST(MotionBelief, AMissedDetectionIsBridgedByTheMemory) {
-  Scene detected;
-  addSurface(detected, 100.0f, 100.0f, 2.0f, 3.0f, 4, 12.0f);
-  const MotionBelief memory = detected.vote();
-  // The same points, but no box, and no distance for one of them
-  Scene missed;
-  addSurface(missed, 100.0f, 100.0f, 2.0f, 3.0f, 4, 12.0f, false);
-  missed.distance[5] = kNaN;
-  missed.label.assign(missed.label.size(), PointLabel::kStatic);
-  const MotionBelief belief = missed.vote(memory);
-  EXPECT_GT(belief.belief[5], 0.9f);
-  // Without the memory they are background, as the paper has it.
-  EXPECT_FLOAT_EQ(missed.vote().belief[5], 0.0f);
-}
-
-TEST(MotionBelief, PointsOutOfRangeVoteAmongThemselves) {
-  Scene scene;
-  for (int k = 0; k < 6; ++k) {
-    scene.add(100.0f + 10.0f * static_cast<float>(k), 50.0f, 0.0f, 0.1f, true, PointLabel::kSuspect,
-              false, SurfaceSupport::kNone);
-  }
-  const std::size_t odd = scene.add(125.0f, 55.0f, 0.0f, 4.0f, true, PointLabel::kDynamic, false,
-                                    SurfaceSupport::kNone);
-  addSurface(scene, 100.0f, 60.0f, 2.0f, 4.0f, 4, 10.0f);
-  EXPECT_LT(scene.vote().belief[odd], 0.6f) << "the person's votes are no business of the wall's";
-}
-
-TEST(MotionBelief, WithoutVotesNothingIsBelieved) {
-  Scene scene;
-  const std::size_t alone = scene.add(100.0f, 100.0f, 2.0f, kNaN);
-  const std::size_t unknown = scene.add(200.0f, 100.0f, 0.0f, 1.0f, true, PointLabel::kDynamic,
-                                        true, SurfaceSupport::kBeside);
-  const MotionBelief belief = scene.vote();
-  EXPECT_TRUE(std::isnan(belief.belief[alone]));
-  EXPECT_TRUE(std::isnan(belief.belief[unknown]));
-  EXPECT_EQ(Scene().vote().size(), 0U);
-}
-
-TEST(MotionBelief, DoesNotDependOnTheOrderOrThePlace) {
-  Scene scene;
-  addSurface(scene, 100.0f, 100.0f, 2.0f, 3.0f, 3, 15.0f);
-  addSurface(scene, 130.0f, 110.0f, 3.0f, 0.2f, 3, 15.0f);
-  const MotionBelief belief = scene.vote();
-  Scene reversed;
-  const std::size_t n = scene.points.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t i = n - 1 - k;
-    reversed.add(scene.points.u[i] + 50.0f, scene.points.v[i] - 20.0f, scene.points.depth[i],
-                 scene.distance[i]);
-  }
-  const MotionBelief other = reversed.vote();
-  for (std::size_t i = 0; i < n; ++i) {
-    EXPECT_NEAR(belief.belief[i], other.belief[n - 1 - i], 1e-5f) << "point " << i;
+TEST_F(MotionBeliefProperties, BeliefsAndWeightsStayInRangeAndRepeatBitForBit) {
+  const MotionBelief first = beliefOf(order, 0.0f, 0.0f);
+  const MotionBelief second = beliefOf(order, 0.0f, 0.0f);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    EXPECT_FALSE(first.belief[i] < 0.0f || first.belief[i] > 1.0f + 1e-6f) << first.belief[i];
+    EXPECT_TRUE(first.weight[i] >= 0.0f && first.weight[i] <= 1.0f) << first.weight[i];
+    EXPECT_TRUE(first.belief[i] == second.belief[i] ||
+                (std::isnan(first.belief[i]) && std::isnan(second.belief[i])));
+    EXPECT_EQ(first.weight[i], second.weight[i]);
   }
 }
 
-TEST(MotionBelief, MistakesOfTheCallerAreNamed) {
-  Scene scene;
-  scene.add(1.0f, 1.0f, 1.0f, 1.0f);
-  scene.in_box.clear();
-  EXPECT_NE(test::invalidArgumentOf([&] { scene.vote(); }).find("0 flags"), std::string::npos);
-  Scene fine;
-  fine.add(1.0f, 1.0f, 1.0f, 1.0f);
-  MotionBeliefOptions options;
-  options.moving_distance = 0.2f;
-  EXPECT_NE(test::invalidArgumentOf([&] { fine.vote({}, options); }).find("moving_distance is 0.2"),
-            std::string::npos);
+TEST_F(MotionBeliefProperties, AReusedWorkspaceChangesNothing) {
+  const Frame large = drawn(order, 0.0f, 0.0f);
+  const Frame small = Frame().add(100, 50, 2.0f, 2.0f).add(180, 50, 2.0f, 0.1f);
+  const MotionBelief memory = update(large);
+  MotionBeliefWorkspace workspace;
+  for (const Frame* frame : {&large, &small, &large}) {
+    workspace.surface = frame->surface;
+    const MotionBelief reused =
+        updateMotionBelief(frame->input(), memory, fixedOptions(), workspace);
+    const MotionBelief fresh = update(*frame, memory);
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+      EXPECT_TRUE(reused.belief[i] == fresh.belief[i] ||
+                  (std::isnan(reused.belief[i]) && std::isnan(fresh.belief[i])));
+      EXPECT_EQ(reused.weight[i], fresh.weight[i]);
+    }
+  }
 }
 
-TEST(ApplyMotionBelief, TurnsBeliefsIntoLabelsAndWeights) {
-  // Points: believed to move; kept suspect; called dynamic but at rest; the same at an edge;
-  // unknown at an edge; unknown elsewhere; outside every box and at rest.
-  MotionBelief belief;
-  belief.u.assign(7, 0.0f);
-  belief.v.assign(7, 0.0f);
-  belief.belief = {0.9f, 0.25f, 0.5f, 0.1f, kNaN, kNaN, 0.0f};
-  FilterStageResult stage;
-  stage.label = {PointLabel::kSuspect, PointLabel::kSuspect, PointLabel::kDynamic,
-                 PointLabel::kDynamic, PointLabel::kDynamic, PointLabel::kDynamic,
-                 PointLabel::kStatic};
-  stage.weight = {0.8f, 0.8f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f};
-  stage.frame.points = 7;
-  const std::vector<std::uint8_t> in_box{1, 1, 1, 1, 1, 1, 0};
-  const std::vector<std::uint8_t> dragged{0, 0, 0, 1, 1, 0, 0};
-  const FilterStageResult result = applyMotionBelief(belief, in_box, dragged, stage);
-  EXPECT_EQ(result.label, (std::vector<PointLabel>{PointLabel::kDynamic, PointLabel::kSuspect,
-                                                   PointLabel::kSuspect, PointLabel::kSuspect,
-                                                   PointLabel::kSuspect, PointLabel::kDynamic,
-                                                   PointLabel::kStatic}));
-  const std::vector<float> weights{0.0f, 0.8f * 0.75f, 0.5f, 0.0f, 0.0f, 0.0f, 1.0f};
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    EXPECT_FLOAT_EQ(result.weight[i], weights[i]) << "point " << i;
-  }
-  EXPECT_EQ(result.frame.dynamic, 2U);
-  EXPECT_EQ(result.frame.suspect, 4U);
-  EXPECT_THROW(applyMotionBelief(belief, {}, dragged, stage), std::invalid_argument);
+TEST(MotionBelief, UnequalArraysAreNamed) {
+  const auto message = [](auto change) {
+    Frame frame = Frame().add(100, 50, 2.0f, 2.0f);
+    MotionBelief memory = update(frame);
+    change(frame, memory);
+    return test::invalidArgumentOf([&] { update(frame, memory); });
+  };
+  using Memory = MotionBelief;
+  EXPECT_EQ(message([](Frame& f, Memory&) { f.distance.clear(); }),
+            "updateMotionBelief: 1 key points, but 0 distances, 1 labels, 1 flags, 1 earlier "
+            "columns, 1 rows; expected equal sizes (no earlier pixels: 0)");
+  EXPECT_EQ(message([](Frame& f, Memory&) { f.earlier_v.clear(); }),
+            "updateMotionBelief: 1 key points, but 1 distances, 1 labels, 1 flags, 1 earlier "
+            "columns, 0 rows; expected equal sizes (no earlier pixels: 0)");
+  EXPECT_EQ(message([](Frame& f, Memory&) { f.surface.is_dragged.clear(); }),
+            "updateMotionBelief: workspace.surface has 1 points; expected surfaceDepths() of "
+            "these 1");
+  EXPECT_EQ(message([](Frame&, Memory& m) { m.weight.clear(); }),
+            "updateMotionBelief: memory: u has 1 elements, v 1, depth 1, belief 1, weight 0; "
+            "expected equal sizes");
+  EXPECT_EQ(message([](Frame& f, Memory&) { f.points.v.clear(); }),
+            "key points: u has 1 elements, v 0, depth 1; expected equal sizes");
+  EXPECT_EQ(message([](Frame&, Memory&) {}), "nothing thrown");
+}
+
+TEST(MotionBelief, OptionsOutOfRangeAreNamed) {
+  const auto message = [](auto change) {
+    MotionBeliefOptions options = fixedOptions();
+    change(options);
+    return test::invalidArgumentOf([&] { update(Frame(), {}, options); });
+  };
+  using Options = MotionBeliefOptions;
+  EXPECT_EQ(message([](Options& o) { o.sigma = 0.0f; }),
+            "MotionBeliefOptions::sigma is 0.000000; expected a finite value > 0");
+  EXPECT_EQ(message([](Options& o) { o.memory_sigma = kInfinity; }),
+            "MotionBeliefOptions::memory_sigma is inf; expected a finite value > 0");
+  EXPECT_EQ(message([](Options& o) { o.depth_sigma_floor = 0.0f; }),
+            "MotionBeliefOptions::depth_sigma_floor is 0.000000; expected a finite value > 0");
+  EXPECT_EQ(message([](Options& o) { o.depth_sigma_quadratic = kInfinity; }),
+            "MotionBeliefOptions::depth_sigma_quadratic is inf; expected a finite value >= 0 "
+            "(1/m)");
+  EXPECT_EQ(message([](Options& o) { o.unmeasured_depth = kNaN; }),
+            "MotionBeliefOptions::unmeasured_depth is nan; expected a finite value > 0");
+  EXPECT_EQ(message([](Options& o) { o.min_weight = 0.0f; }),
+            "MotionBeliefOptions::min_weight is 0.000000; expected a finite value > 0");
+  EXPECT_EQ(message([](Options& o) { o.weight_cap = -1.0f; }),
+            "MotionBeliefOptions::weight_cap is -1.000000; expected a finite value > 0");
+  EXPECT_EQ(message([](Options& o) { o.still_distance = -0.1f; }),
+            "MotionBeliefOptions::still_distance is -0.100000; expected a value >= 0 (px)");
+  EXPECT_EQ(message([](Options& o) { o.moving_distance = 0.3f; }),
+            "MotionBeliefOptions::moving_distance is 0.300000; expected a finite value above "
+            "still_distance (px)");
+  EXPECT_EQ(message([](Options& o) { o.memory_gain = -1.0f; }),
+            "MotionBeliefOptions::memory_gain is -1.000000; expected a finite value >= 0");
+  EXPECT_EQ(message([](Options& o) { o.dynamic_evidence = 1.5f; }),
+            "MotionBeliefOptions::dynamic_evidence is 1.500000; expected a value in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.quiet_weight = -0.5f; }),
+            "MotionBeliefOptions::quiet_weight is -0.500000; expected a value in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.inferred_weight = kNaN; }),
+            "MotionBeliefOptions::inferred_weight is nan; expected a value in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.dragged_weight = 2.0f; }),
+            "MotionBeliefOptions::dragged_weight is 2.000000; expected a value in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.memory_decay = 1.1f; }),
+            "MotionBeliefOptions::memory_decay is 1.100000; expected a value in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.dynamic_belief = -1.0f; }),
+            "MotionBeliefOptions::dynamic_belief is -1.000000; expected a value in [0, 1]");
+  EXPECT_EQ(message([](Options&) {}), "nothing thrown");
 }
 
 }  // namespace

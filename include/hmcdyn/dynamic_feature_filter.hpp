@@ -91,7 +91,7 @@ struct DynamicFeatureFilterResult {
   std::vector<float> distance;              ///< N distances (px), NaN = none.
   FilterStageResult stage;                  ///< Labels, weights, clusters; boxes and frame.
   std::vector<EarlierFrameReport> earlier;  ///< One an earlier frame.
-  MotionBelief belief;  ///< The next frame's memory; empty without a depth image.
+  MotionBelief belief;  ///< The next frame's memory; empty where no beliefs are formed.
 };
 
 /// Memory that filterDynamicFeatures reuses from frame to frame.
@@ -111,7 +111,8 @@ struct DynamicFeatureFilterWorkspace {
 /// Without an earlier frame, or where no model holds, no point has a distance: all are static, and
 /// the reports say why.
 /// @throws std::invalid_argument for a null pyramid, unequal arrays, images of unequal size, a
-/// missing motion, depth or camera where the ego-motion distance is asked for, or a bad option.
+/// missing motion, depth or camera where the ego-motion distance is asked for, a memory of unequal
+/// arrays, or a bad option.
 DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput& input,
                                                  const DynamicFeatureFilterOptions& options,
                                                  DynamicFeatureFilterWorkspace& workspace);

@@ -34,11 +34,13 @@ struct MotionBeliefOptions {
   float moving_distance = 1.0f;   ///< ... from this on 1 ("moving"), in between linearly.
   float dynamic_evidence = 0.5f;  ///< The least that a point of a dynamic cluster votes, 0..1.
 
-  float quiet_weight = 0.3f;      ///< Weight of "at rest" in a box: people pause.
-  float inferred_weight = 0.3f;   ///< Weight of a point whose depth is inferred, not measured.
-  float dragged_weight = 0.05f;   ///< Weight of a point whose flow a nearer surface may drag along.
-  float unmeasured_depth = 9.0f;  ///< Depth of points that lie beyond the sensor's range (m).
-  float min_weight = 0.2f;        ///< Votes of less weight than this leave a point unjudged.
+  float quiet_weight = 0.3f;     ///< Weight of "at rest" in a box: people pause.
+  float inferred_weight = 0.3f;  ///< Weight of a point whose depth is inferred, not measured.
+  float dragged_weight = 0.05f;  ///< Weight of a point whose flow a nearer surface may drag along.
+  /// Depth at which points beyond the sensor's range vote among themselves (m). A surface that is
+  /// measured that deep votes with them.
+  float unmeasured_depth = 9.0f;
+  float min_weight = 0.2f;  ///< Votes of less weight than this leave a point unjudged.
 
   float memory_gain = 2.0f;     ///< Weight of the memory against the votes of the frame.
   float memory_decay = 0.9f;    ///< What a frame leaves of the memory's weight, 0..1.
@@ -66,12 +68,13 @@ inline void checkOptions(const MotionBeliefOptions& options) {
   positive("unmeasured_depth", options.unmeasured_depth);
   positive("min_weight", options.min_weight);
   positive("weight_cap", options.weight_cap);
-  require(options.depth_sigma_quadratic >= 0.0f, "depth_sigma_quadratic",
-          options.depth_sigma_quadratic, "a value >= 0 (1/m)");
+  require(options.depth_sigma_quadratic >= 0.0f && std::isfinite(options.depth_sigma_quadratic),
+          "depth_sigma_quadratic", options.depth_sigma_quadratic, "a finite value >= 0 (1/m)");
   require(options.still_distance >= 0.0f, "still_distance", options.still_distance,
           "a value >= 0 (px)");
-  require(options.moving_distance > options.still_distance, "moving_distance",
-          options.moving_distance, "a value above still_distance (px)");
+  require(
+      options.moving_distance > options.still_distance && std::isfinite(options.moving_distance),
+      "moving_distance", options.moving_distance, "a finite value above still_distance (px)");
   require(options.memory_gain >= 0.0f && std::isfinite(options.memory_gain), "memory_gain",
           options.memory_gain, "a finite value >= 0");
   share("dynamic_evidence", options.dynamic_evidence);
@@ -82,15 +85,29 @@ inline void checkOptions(const MotionBeliefOptions& options) {
   share("dynamic_belief", options.dynamic_belief);
 }
 
-/// What is believed about N key points; of the frame before, it is the memory for this one.
+/// What is believed about N key points; of the frame before, it is the memory for this one. The two
+/// frames need not have as many points.
 struct MotionBelief {
-  std::vector<float> u, v;    ///< N pixels.
+  std::vector<float> u, v;    ///< N pixels; one that is not finite takes no part.
   std::vector<float> depth;   ///< N depths of their surfaces (m); 0 = unknown, takes no part.
   std::vector<float> belief;  ///< N beliefs, 0 = at rest .. 1 = moving; NaN = nothing is known.
   std::vector<float> weight;  ///< N weights, 0 = a guess .. 1 = certain.
 
   std::size_t size() const noexcept { return u.size(); }
 };
+
+/// @throws std::invalid_argument unless the five arrays have one size.
+inline void checkBelief(const MotionBelief& belief, const char* name) {
+  const std::size_t n = belief.size();
+  if (belief.v.size() != n || belief.depth.size() != n || belief.belief.size() != n ||
+      belief.weight.size() != n) {
+    throw std::invalid_argument(std::string(name) + ": u has " + std::to_string(n) +
+                                " elements, v " + std::to_string(belief.v.size()) + ", depth " +
+                                std::to_string(belief.depth.size()) + ", belief " +
+                                std::to_string(belief.belief.size()) + ", weight " +
+                                std::to_string(belief.weight.size()) + "; expected equal sizes");
+  }
+}
 
 /// What a frame's points are judged by. All of one size N, borrowed.
 struct MotionBeliefInput {
@@ -99,7 +116,7 @@ struct MotionBeliefInput {
   Span<const PointLabel> label;     ///< Verdicts of the steps before.
   Span<const std::uint8_t> in_box;  ///< 1 in a detection box, whether or not it is dynamic.
   Span<const float> earlier_u;      ///< Columns in the frame of the memory (px); empty = none.
-  Span<const float> earlier_v;      ///< Rows there; a NaN stands for "where it is now".
+  Span<const float> earlier_v;      ///< Rows there; not finite stands for "where it is now".
 };
 
 namespace detail {
@@ -183,12 +200,17 @@ struct MotionBeliefWorkspace {
 
 namespace detail {
 
+/// A vote from no pixel or no depth would reach every point as a NaN.
+inline bool isPlaced(float u, float v, float depth) {
+  return std::isfinite(u) && std::isfinite(v) && hasDepth(depth);
+}
+
 inline void collectVotes(const MotionBeliefInput& input, const MotionBelief& memory,
                          const MotionBelief& current, const MotionBeliefOptions& options,
                          MotionBeliefWorkspace& workspace) {
   workspace.votes.reserve(input.points.size());
   for (std::size_t i = 0; i < input.points.size(); ++i) {
-    if (current.depth[i] > 0.0f && !std::isnan(input.distance[i])) {
+    if (isPlaced(current.u[i], current.v[i], current.depth[i]) && !std::isnan(input.distance[i])) {
       const float evidence = ownEvidence(input.distance[i], input.label[i], options);
       workspace.votes.add(
           input.points.u[i], input.points.v[i], current.depth[i], evidence,
@@ -199,7 +221,8 @@ inline void collectVotes(const MotionBeliefInput& input, const MotionBelief& mem
   workspace.memory.reserve(memory.size());
   workspace.dynamic_memory.reserve(memory.size());
   for (std::size_t k = 0; k < memory.size(); ++k) {
-    if (memory.depth[k] > 0.0f && memory.weight[k] > 0.0f && !std::isnan(memory.belief[k])) {
+    if (isPlaced(memory.u[k], memory.v[k], memory.depth[k]) && memory.weight[k] > 0.0f &&
+        !std::isnan(memory.belief[k])) {
       workspace.memory.add(memory.u[k], memory.v[k], memory.depth[k], memory.belief[k],
                            memory.weight[k]);
       if (memory.belief[k] > options.dynamic_belief) {
@@ -220,7 +243,8 @@ inline std::pair<float, float> judge(const MotionBeliefInput& input, std::size_t
                                      MotionBeliefWorkspace& workspace) {
   const float u = input.points.u[i];
   const float v = input.points.v[i];
-  const bool has_earlier = !input.earlier_u.empty() && !std::isnan(input.earlier_u[i]);
+  const bool has_earlier = !input.earlier_u.empty() && std::isfinite(input.earlier_u[i]) &&
+                           std::isfinite(input.earlier_v[i]);
   const float earlier_u = has_earlier ? input.earlier_u[i] : u;
   const float earlier_v = has_earlier ? input.earlier_v[i] : v;
   const auto count = [&](const Votes& votes, float column, float row, float sigma) {
@@ -253,12 +277,13 @@ inline void checkInput(const MotionBeliefInput& input) {
                             (input.earlier_u.size() == n && input.earlier_v.size() == n);
   if (input.distance.size() != n || input.label.size() != n || input.in_box.size() != n ||
       !earlier_fits) {
-    throw std::invalid_argument(
-        "updateMotionBelief: " + std::to_string(n) + " key points, but " +
-        std::to_string(input.distance.size()) + " distances, " +
-        std::to_string(input.label.size()) + " labels, " + std::to_string(input.in_box.size()) +
-        " flags, " + std::to_string(input.earlier_u.size()) + " earlier pixels; expected equal " +
-        "sizes (no earlier pixels: 0)");
+    throw std::invalid_argument("updateMotionBelief: " + std::to_string(n) + " key points, but " +
+                                std::to_string(input.distance.size()) + " distances, " +
+                                std::to_string(input.label.size()) + " labels, " +
+                                std::to_string(input.in_box.size()) + " flags, " +
+                                std::to_string(input.earlier_u.size()) + " earlier columns, " +
+                                std::to_string(input.earlier_v.size()) +
+                                " rows; expected equal sizes (no earlier pixels: 0)");
   }
 }
 
@@ -274,7 +299,9 @@ inline void checkInput(const MotionBeliefInput& input) {
 /// Points outside every box and far from all that was believed to move are at rest. What was
 /// believed to move stays so outside the boxes, too: detectors miss people.
 ///
-/// @param memory of the frame before; empty at the start.
+/// A point whose pixel is not finite neither votes nor is judged.
+///
+/// @param memory of the frame before, of any number of points; empty at the start.
 /// @param workspace its `surface` must be surfaceDepths() of these points.
 /// @return N beliefs: this frame's result, and the next one's memory.
 /// @throws std::invalid_argument when sizes differ or an option is out of range.
@@ -283,10 +310,12 @@ inline MotionBelief updateMotionBelief(const MotionBeliefInput& input, const Mot
                                        MotionBeliefWorkspace& workspace) {
   checkOptions(options);
   detail::checkInput(input);
+  checkBelief(memory, "updateMotionBelief: memory");
   const std::size_t n = input.points.size();
-  if (workspace.surface.depth.size() != n) {
+  const SurfaceDepths& surface = workspace.surface;
+  if (surface.depth.size() != n || surface.support.size() != n || surface.is_dragged.size() != n) {
     throw std::invalid_argument("updateMotionBelief: workspace.surface has " +
-                                std::to_string(workspace.surface.depth.size()) +
+                                std::to_string(surface.depth.size()) +
                                 " points; expected surfaceDepths() of these " + std::to_string(n));
   }
   MotionBelief current;
@@ -302,7 +331,7 @@ inline MotionBelief updateMotionBelief(const MotionBeliefInput& input, const Mot
   current.belief.assign(n, kNaN);
   current.weight.assign(n, 0.0f);
   for (std::size_t i = 0; i < n; ++i) {
-    if (current.depth[i] > 0.0f) {
+    if (detail::isPlaced(current.u[i], current.v[i], current.depth[i])) {
       std::tie(current.belief[i], current.weight[i]) =
           detail::judge(input, i, current.depth[i], options, workspace);
     }
@@ -334,9 +363,12 @@ inline FilterStageResult applyMotionBelief(const MotionBelief& belief,
                                            const MotionBeliefOptions& options = {},
                                            const BeliefVerdictOptions& verdict = {}) {
   checkOptions(options);
+  checkBelief(belief, "applyMotionBelief: belief");
   const std::size_t n = stage.label.size();
-  if (belief.size() != n || in_box.size() != n || is_dragged.size() != n) {
+  if (stage.weight.size() != n || belief.size() != n || in_box.size() != n ||
+      is_dragged.size() != n) {
     throw std::invalid_argument("applyMotionBelief: " + std::to_string(n) + " labels, but " +
+                                std::to_string(stage.weight.size()) + " weights, " +
                                 std::to_string(belief.size()) + " beliefs, " +
                                 std::to_string(in_box.size()) + " and " +
                                 std::to_string(is_dragged.size()) + " flags; expected equal sizes");

@@ -44,7 +44,8 @@ struct FlowMatches {
 /// the current frame gets its own match. Key points outside the image or not finite are lost, not
 /// an error; so are those whose match would lie outside the earlier image.
 /// @param guess where the N points may have been (px), e.g. the motion since a younger frame,
-/// prolonged; NaN = no guess for this point; empty = none for any.
+/// prolonged; NaN, or a pixel outside the image = none for this point, which is looked for where it
+/// is now, from the same pyramid level as the others; empty = none for any.
 /// @throws std::invalid_argument for an empty pyramid, pyramids of different image sizes, unequal
 /// arrays, a window larger than a pyramid was built for, or another bad option.
 FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid& earlier,

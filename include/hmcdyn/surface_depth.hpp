@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,7 +15,8 @@
 
 namespace hmcdyn {
 
-/// A depth image (m), borrowed: row r starts at data + r * stride. 0, negative or NaN = none.
+/// A depth image (m), borrowed: row r starts at data + r * stride. 0, negative or not finite =
+/// none.
 struct DepthImageView {
   const float* data = nullptr;
   int width = 0;           ///< (px)
@@ -33,12 +33,14 @@ struct SurfaceDepthOptions {
   int own_radius = 2;      ///< Half side of the window that gives a point's own depth (px).
   float own_share = 0.4f;  ///< Share of its pixels that must have a depth, in (0, 1].
 
-  int wide_radius = 12;         ///< Half side of the window that is asked next (px).
+  /// Half side of the window that is asked next (px), every second pixel; below 2 it holds too few
+  /// to be asked.
+  int wide_radius = 12;
   float enclosed_share = 0.5f;  ///< Of all its pixels, near ones that enclose the point.
   float behind_share = 0.1f;    ///< Of all its pixels, far ones that let the point lie behind.
 
   /// Half side of the window that optical flow compares (px): a nearer surface within it drags the
-  /// point along.
+  /// point along. A flow window of 11 px reaches 5 px, and 10 px one pyramid level up.
   int flow_radius = 10;
   /// Two depths z belong to two surfaces when they differ by gap_floor + gap_quadratic z^2 (m).
   float gap_floor = 0.1f;
@@ -58,15 +60,16 @@ inline void checkOptions(const SurfaceDepthOptions& options) {
           static_cast<float>(options.own_radius), "a radius in [0, 25] (px)");
   require(options.wide_radius >= 0 && options.wide_radius <= 50, "wide_radius",
           static_cast<float>(options.wide_radius), "a radius in [0, 50] (px)");
-  require(options.flow_radius >= 0, "flow_radius", static_cast<float>(options.flow_radius),
-          "a radius >= 0 (px)");
+  require(options.flow_radius >= 0 && options.flow_radius <= 250, "flow_radius",
+          static_cast<float>(options.flow_radius), "a radius in [0, 250] (px)");
   require(share(options.own_share), "own_share", options.own_share, "a share in (0, 1]");
   require(share(options.enclosed_share), "enclosed_share", options.enclosed_share,
           "a share in (0, 1]");
   require(share(options.behind_share), "behind_share", options.behind_share, "a share in (0, 1]");
-  require(options.gap_floor >= 0.0f, "gap_floor", options.gap_floor, "a value >= 0 (m)");
-  require(options.gap_quadratic >= 0.0f, "gap_quadratic", options.gap_quadratic,
-          "a value >= 0 (1/m)");
+  require(options.gap_floor >= 0.0f && std::isfinite(options.gap_floor), "gap_floor",
+          options.gap_floor, "a finite value >= 0 (m)");
+  require(options.gap_quadratic >= 0.0f && std::isfinite(options.gap_quadratic), "gap_quadratic",
+          options.gap_quadratic, "a finite value >= 0 (1/m)");
 }
 
 /// How well the depth of a point's surface is known.
@@ -75,7 +78,7 @@ enum class SurfaceSupport : std::uint8_t {
   kEnclosed,  ///< Not there, but all around it lies one near surface: a hole in it (dark cloth).
   kBehind,    ///< Not there, beside an edge: it is the farther surface that lies in shadow.
   kBeside,    ///< Not there, beside a near surface, and nothing shows what lies behind.
-  kNone,      ///< No depth all around: out of the sensor's range.
+  kNone,      ///< Hardly a depth all around: out of the sensor's range; or not in the image.
 };
 
 /// "measured", "enclosed", "behind", "beside" or "none".
@@ -143,7 +146,7 @@ class DepthWindow {
         std::partition(depth_.data(), end, [limit](float z) { return z <= limit; }) -
         depth_.data());
   }
-  /// Median of the depths [from, to).
+  /// Median of the depths [from, to), the farther of the two middle ones of an even number.
   float median(std::size_t from, std::size_t to) {
     auto* const first = depth_.data() + static_cast<std::ptrdiff_t>(from);
     auto* const last = depth_.data() + static_cast<std::ptrdiff_t>(to);
@@ -237,7 +240,8 @@ inline SurfaceDepths surfaceDepths(const DepthImageView& image, Span<const float
   reuse.is_dragged.assign(u.size(), 0);
   detail::DepthWindow window;
   for (std::size_t i = 0; i < u.size(); ++i) {
-    const bool inside = u[i] >= -0.5f && v[i] >= -0.5f &&
+    // -0.5 rounds away from the image; false for NaN, too
+    const bool inside = u[i] > -0.5f && v[i] > -0.5f &&
                         u[i] < static_cast<float>(image.width) - 0.5f &&
                         v[i] < static_cast<float>(image.height) - 0.5f;
     if (!inside) {
