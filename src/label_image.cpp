@@ -47,6 +47,7 @@ std::vector<LabelRegion> regionsIn(const cv::Mat& labels, int background, int cl
     }
     values.erase(background);
     std::vector<LabelRegion> regions;
+    regions.reserve(values.size());
     for (const int value : values) {
       regions.push_back({value, class_id, 1.0f});
     }
