@@ -75,7 +75,7 @@ void expectFound(const Detection& detection, std::size_t frame) {
 
 class Detecting : public testing::Test {
  protected:
-  std::unique_ptr<ObjectDetector> fake(std::function<void(double)> before) {
+  static std::unique_ptr<ObjectDetector> fake(std::function<void(double)> before) {
     return std::make_unique<FakeDetector>(std::move(before));
   }
   Report report() {

@@ -127,6 +127,7 @@ TEST_F(Live, UnpluggedInTheMiddleSaysSoAndEnds) {
 
 TEST_F(Live, FramesWithoutDepthAreDeliveredCountedAndReportedOncePerGap) {
   std::vector<CameraImages> images;
+  images.reserve(6);
   for (int k = 0; k < 6; ++k) {
     images.push_back(imagesAt(k));
   }
