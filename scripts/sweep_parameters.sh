@@ -6,26 +6,37 @@ set -euo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--preset NAME] [--frames N] [--output DIR] [SCENE...]
+Usage: ${0##*/} [--preset NAME] [--frames N] [--sequences DIR] [--output DIR] [SCENE...]
 
-Prints a Markdown table: F1 of 'dynamic' and the share of static points in boxes that were kept, over
-all scenes (default: walking_xyz crowd), a row a setting. The preset must have been built.
+Prints a Markdown table, a row a setting: precision, recall and F1 of 'dynamic' and the share of static
+points in boxes that were kept, over all scenes (default: walking_xyz crowd), and the filter's CPU
+time a frame (the mean of the scenes). The preset must have been built.
 
-  --preset NAME   whose binaries are used (default: release)
-  --frames N      frames a scene (default: 60)
-  --output DIR    where sequences and runs go (default: build/sweep)
+  --preset NAME     whose binaries are used (default: release)
+  --frames N        frames a scene (default: 60)
+  --sequences DIR   folders that hmcdyn_synthesize rendered, one a scene; a scene that is missing
+                    there is an error (default: OUTPUT, where missing ones are rendered)
+  --output DIR      where sequences and runs go (default: build/sweep)
 USAGE
 }
 
 preset=release
 frames=60
 output=
+sequences=
 scenes=()
 while (($# > 0)); do
   case "$1" in
-    --preset) preset=$2 && shift ;;
-    --frames) frames=$2 && shift ;;
-    --output) output=$2 && shift ;;
+    --preset | --frames | --output | --sequences)
+      (($# > 1)) || { usage >&2 && exit 2; }
+      case "$1" in
+        --preset) preset=$2 ;;
+        --frames) frames=$2 ;;
+        --output) output=$(realpath -m "$2") ;;
+        --sequences) sequences=$(realpath -m "$2") ;;
+      esac
+      shift
+      ;;
     --help | -h) usage && exit 0 ;;
     -*) usage >&2 && exit 2 ;;
     *) scenes+=("$1") ;;
@@ -38,26 +49,68 @@ bin=$PWD/build/$preset/bin
 ((${#scenes[@]} > 0)) || scenes=(walking_xyz crowd)
 
 for scene in "${scenes[@]}"; do
-  [[ -f $output/$scene/associations.txt ]] || "$bin/hmcdyn_synthesize" --scene "$scene" \
-    --frames "$frames" --output "$output/$scene" --overwrite --quiet
+  if [[ -n $sequences && ! -f $sequences/$scene/associations.txt ]]; then
+    echo "${0##*/}: $sequences/$scene is no rendered sequence" >&2
+    exit 1
+  fi
+  [[ -n $sequences || -f $output/$scene/associations.txt ]] || "$bin/hmcdyn_synthesize" \
+    --scene "$scene" --frames "$frames" --output "$output/$scene" --overwrite --quiet
 done
+sequences=${sequences:-$output}
 
-row() {
-  local name=$1 pairs=()
-  shift
-  for scene in "${scenes[@]}"; do
-    "$bin/hmcdyn_slam" --dataset "$output/$scene" --camera "$output/$scene/calibration.yaml" \
-      --detector file --boxes "$output/$scene/boxes.txt" --write-keypoints --quiet \
-      --output "$output/run_$scene" "$@" >/dev/null
-    pairs+=("$output/$scene:$output/run_$scene/keypoints.csv")
-  done
-  "$bin/hmcdyn_label_score" "${pairs[@]}" --skip-frames 3 |
-    awk -v name="$name" 'END { printf "| %s | %s | %s | %s | %s |\n", name, $2, $3, $4, $5 }'
+filter_ms() {
+  python3 -c 'import json, sys
+times = [json.load(open(file))["stages"]["filter"]["mean_cpu_ms"] for file in sys.argv[1:]]
+print(f"{sum(times) / len(times):.1f}")' "$@"
 }
 
-echo "| setting | precision | recall | F1 | kept |"
-echo "|---|---|---|---|---|"
+row() {
+  local name=$1 pairs=() summaries=()
+  shift
+  for scene in "${scenes[@]}"; do
+    if ! "$bin/hmcdyn_slam" --dataset "$sequences/$scene" \
+      --camera "$sequences/$scene/calibration.yaml" --detector file \
+      --boxes "$sequences/$scene/boxes.txt" --write-keypoints --no-dense-map --no-report --quiet \
+      --max-frames "$frames" --output "$output/run_$scene" "$@" >"$output/run_$scene.log" 2>&1; then
+      echo "${0##*/}: '$name' failed on $scene, see $output/run_$scene.log" >&2
+      echo "| $name | failed | | | | |"
+      return
+    fi
+    pairs+=("$sequences/$scene:$output/run_$scene/keypoints.csv")
+    summaries+=("$output/run_$scene/summary.json")
+  done
+  "$bin/hmcdyn_label_score" "${pairs[@]}" --skip-frames 3 |
+    awk -v name="$name" -v ms="$(filter_ms "${summaries[@]}")" \
+      'END { printf "| %s | %s | %s | %s | %s | %s |\n", name, $2, $3, $4, $5, ms }'
+}
+
+mkdir -p "$output"
+echo "| setting | precision | recall | F1 | kept | filter (ms CPU) |"
+echo "|---|---|---|---|---|---|"
 row "defaults"
+row "without beliefs (the paper's steps alone)" --no-belief
+for sigma in 40 160; do
+  row "vote sigma $sigma px" --vote-sigma "$sigma"
+done
+for gain in 0 1 4; do
+  row "memory gain $gain" --memory-gain "$gain"
+done
+for weight in 0.1 0.6 1; do
+  row "quiet weight $weight" --quiet-weight "$weight"
+done
+for belief in 0.5 0.7; do
+  row "dynamic belief $belief" --dynamic-belief "$belief"
+done
+for window in 15 21; do # 11 is the default
+  row "flow window $window px" --flow-window "$window"
+done
+row "forward and backward" --forward-backward
+for count in 150 300 0; do
+  row "flow background $count" --flow-background "$count"
+done
+for count in 150 0; do
+  row "flow in boxes $count" --flow-in-boxes "$count"
+done
 row "the paper's rules (both floors 0)" --min-strongest-distance 0 --screening-floor 0
 row "the neighbour alone" --baselines 0
 row "0.1 s alone" --baselines 0.1

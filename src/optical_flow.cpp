@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <opencv2/core.hpp>
 #include <opencv2/video/tracking.hpp>
@@ -45,7 +47,7 @@ int borderOf(const FlowPyramid& pyramid) {
 struct FlowStarts {
   std::vector<std::size_t> source;  ///< Which key point each is.
   std::vector<cv::Point2f> start;
-  std::vector<cv::Point2f> back;  ///< Guesses; empty without any.
+  std::vector<cv::Point2f> guess;  ///< Where the search starts; empty without any.
 };
 
 /// False for NaN, too.
@@ -64,28 +66,54 @@ FlowStarts collectStarts(const cv::Size& size, const KeyPointsView& points,
     starts.source.push_back(i);
     starts.start.emplace_back(points.u[i], points.v[i]);
     if (!guess.u.empty()) {
-      starts.back.push_back(isInside(size, guess.u[i], guess.v[i])
-                                ? cv::Point2f(guess.u[i], guess.v[i])
-                                : starts.start.back());
+      starts.guess.push_back(isInside(size, guess.u[i], guess.v[i])
+                                 ? cv::Point2f(guess.u[i], guess.v[i])
+                                 : starts.start.back());
     }
   }
   return starts;
 }
 
-/// 1 for each match that leads back to its start.
-std::vector<std::uint8_t> checkForth(const FlowPyramid& current, const FlowPyramid& earlier,
-                                     const FlowStarts& starts, const OpticalFlowOptions& options,
-                                     const cv::TermCriteria& until) {
-  std::vector<cv::Point2f> forth;
+/// What one pass of pyramidal Lucas-Kanade finds.
+struct FlowPass {
+  std::vector<cv::Point2f> to;
   std::vector<std::uint8_t> found;
-  cv::calcOpticalFlowPyrLK(earlier, current, starts.back, forth, found, cv::noArray(),
-                           cv::Size(options.window, options.window), options.max_level, until);
-  for (std::size_t k = 0; k < forth.size(); ++k) {
-    const cv::Point2f loop = forth[k] - starts.start[k];
-    const bool returned = std::hypot(loop.x, loop.y) <= options.max_forward_backward_error;
-    found[k] = found[k] != 0 && returned ? 1 : 0;
+  std::vector<float> difference;
+};
+
+/// @param start where the search starts; empty = at `from`.
+FlowPass followPoints(const FlowPyramid& source, const FlowPyramid& target,
+                      const std::vector<cv::Point2f>& from, std::vector<cv::Point2f> start,
+                      const OpticalFlowOptions& options) {
+  const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS,
+                               options.max_iterations, options.epsilon);
+  const bool guessed = !start.empty();
+  FlowPass pass;
+  pass.to = std::move(start);
+  cv::calcOpticalFlowPyrLK(
+      source, target, from, pass.to, pass.found, pass.difference,
+      cv::Size(options.window, options.window),
+      guessed ? std::min(options.guess_max_level, options.max_level) : options.max_level, until,
+      guessed ? static_cast<int>(cv::OPTFLOW_USE_INITIAL_FLOW) : 0);
+  return pass;
+}
+
+/// 1 for each match that leads back to its start. Where the way back was guessed, the way forth is
+/// searched from the same motion: without, what a guess found beyond the window would be lost here.
+std::vector<std::uint8_t> checkForth(const FlowPyramid& current, const FlowPyramid& earlier,
+                                     const FlowStarts& starts, const std::vector<cv::Point2f>& back,
+                                     const OpticalFlowOptions& options) {
+  std::vector<cv::Point2f> guess;
+  for (std::size_t k = 0; k < starts.guess.size(); ++k) {
+    guess.push_back(back[k] + (starts.start[k] - starts.guess[k]));
   }
-  return found;
+  FlowPass forth = followPoints(earlier, current, back, std::move(guess), options);
+  for (std::size_t k = 0; k < forth.to.size(); ++k) {
+    const cv::Point2f loop = forth.to[k] - starts.start[k];
+    const bool returned = std::hypot(loop.x, loop.y) <= options.max_forward_backward_error;
+    forth.found[k] = forth.found[k] != 0 && returned ? 1 : 0;
+  }
+  return forth.found;
 }
 
 }  // namespace
@@ -124,7 +152,9 @@ FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid&
                                 std::to_string(options.window) + ", but a pyramid was built for " +
                                 std::to_string(border) + "; expected at most that");
   }
-  if (!guess.u.empty() && (guess.u.size() != points.size() || guess.v.size() != points.size())) {
+  const bool guesses_fit = (guess.u.empty() && guess.v.empty()) ||
+                           (guess.u.size() == points.size() && guess.v.size() == points.size());
+  if (!guesses_fit) {
     throw std::invalid_argument("trackIntoEarlierFrame: " + std::to_string(points.size()) +
                                 " key points, but guesses for " + std::to_string(guess.u.size()) +
                                 " columns and " + std::to_string(guess.v.size()) +
@@ -134,29 +164,21 @@ FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid&
   FlowMatches matches;
   matches.u.assign(points.size(), kNaN);
   matches.v.assign(points.size(), kNaN);
-  FlowStarts starts = collectStarts(size, points, guess);
+  const FlowStarts starts = collectStarts(size, points, guess);
   if (starts.start.empty()) {
     return matches;
   }
 
-  const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS,
-                               options.max_iterations, options.epsilon);
-  const bool guessed = !starts.back.empty();
-  std::vector<std::uint8_t> found;
-  std::vector<float> difference;
-  cv::calcOpticalFlowPyrLK(
-      current, earlier, starts.start, starts.back, found, difference,
-      cv::Size(options.window, options.window),
-      guessed ? std::min(options.guess_max_level, options.max_level) : options.max_level, until,
-      guessed ? static_cast<int>(cv::OPTFLOW_USE_INITIAL_FLOW) : 0);
+  const FlowPass back = followPoints(current, earlier, starts.start, starts.guess, options);
   const std::vector<std::uint8_t> returned =
-      options.forward_backward ? checkForth(current, earlier, starts, options, until) : found;
+      options.forward_backward ? checkForth(current, earlier, starts, back.to, options)
+                               : back.found;
   for (std::size_t k = 0; k < starts.start.size(); ++k) {
-    const cv::Point2f& back = starts.back[k];
-    if (found[k] != 0 && returned[k] != 0 && difference[k] <= options.max_difference &&
-        isInside(size, back.x, back.y)) {
-      matches.u[starts.source[k]] = back.x;
-      matches.v[starts.source[k]] = back.y;
+    const cv::Point2f& match = back.to[k];
+    if (back.found[k] != 0 && returned[k] != 0 && back.difference[k] <= options.max_difference &&
+        isInside(size, match.x, match.y)) {
+      matches.u[starts.source[k]] = match.x;
+      matches.v[starts.source[k]] = match.y;
       ++matches.found;
     }
   }

@@ -1,101 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <hmcdyn/motion_belief.hpp>
 
-#include "invalid_argument.hpp"
-#include "random.hpp"
+#include "belief_frame.hpp"
 
 namespace hmcdyn {
 namespace {
 
+using Frame = test::BeliefFrame;
+using test::update;
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// Every option set. At 2 m the depth reach is 0.03 + 0.02 * 4 = 0.11 m.
-MotionBeliefOptions fixedOptions() {
-  MotionBeliefOptions options;
-  options.sigma = 80.0f;
-  options.memory_sigma = 24.0f;
-  options.depth_sigma_floor = 0.03f;
-  options.depth_sigma_quadratic = 0.02f;
-  options.still_distance = 0.3f;
-  options.moving_distance = 1.0f;
-  options.dynamic_evidence = 0.5f;
-  options.quiet_weight = 0.3f;
-  options.inferred_weight = 0.3f;
-  options.dragged_weight = 0.05f;
-  options.unmeasured_depth = 9.0f;
-  options.min_weight = 0.2f;
-  options.memory_gain = 2.0f;
-  options.memory_decay = 0.9f;
-  options.weight_cap = 20.0f;
-  options.dynamic_belief = 0.6f;
-  return options;
-}
-
-/// A frame's points, each with all that it is judged by.
-struct Frame {
-  KeyPoints points;
-  std::vector<float> distance;
-  std::vector<PointLabel> label;
-  std::vector<std::uint8_t> in_box;
-  std::vector<float> earlier_u;
-  std::vector<float> earlier_v;
-  SurfaceDepths surface;
-
-  /// A measured point in a box that was where it is.
-  Frame& add(float u, float v, float depth, float at_distance) {
-    points.push_back(u, v, depth);
-    distance.push_back(at_distance);
-    label.push_back(PointLabel::kSuspect);
-    in_box.push_back(1);
-    earlier_u.push_back(u);
-    earlier_v.push_back(v);
-    surface.depth.push_back(depth);
-    surface.support.push_back(SurfaceSupport::kMeasured);
-    surface.is_dragged.push_back(0);
-    return *this;
-  }
-  Frame& add(int count, float u, float v, float depth, float at_distance) {
-    for (int k = 0; k < count; ++k) {
-      add(u, v, depth, at_distance);
-    }
-    return *this;
-  }
-  Frame& support(SurfaceSupport of_last) {
-    surface.support.back() = of_last;
-    if (of_last == SurfaceSupport::kBeside || of_last == SurfaceSupport::kNone) {
-      surface.depth.back() = 0.0f;
-    }
-    return *this;
-  }
-  Frame& dragged() {
-    surface.is_dragged.back() = 1;
-    return *this;
-  }
-  Frame& outsideBoxes() {
-    in_box.assign(points.size(), 0);
-    return *this;
-  }
-
-  MotionBeliefInput input() const {
-    return {points.view(), distance, label, in_box, earlier_u, earlier_v};
-  }
-};
-
-MotionBelief update(const Frame& frame, const MotionBelief& memory = {},
-                    const MotionBeliefOptions& options = fixedOptions()) {
-  MotionBeliefWorkspace workspace;
-  workspace.surface = frame.surface;
-  return updateMotionBelief(frame.input(), memory, options, workspace);
-}
 
 /// The kernel's closed form.
 double kernel(double q) { return std::pow(std::max(0.0, 1.0 - q / 8.0), 4); }
@@ -166,7 +86,7 @@ TEST(MotionBelief, AStillArmGoesWithItsBody) {
   const MotionBelief belief = update(Frame().add(8, 100, 50, 2.0f, 2.0f).add(130, 50, 2.0f, 0.1f));
   const double votes = 8 * kernel(30.0 * 30.0 / 6400.0);
   EXPECT_NEAR(belief.belief[8], votes / (votes + 0.3), 1e-5);
-  EXPECT_GT(belief.belief[8], fixedOptions().dynamic_belief);
+  EXPECT_GT(belief.belief[8], test::fixedBeliefOptions().dynamic_belief);
 }
 
 TEST(MotionBelief, WhoPausesStaysDynamicForThreeFrames) {
@@ -183,7 +103,7 @@ TEST(MotionBelief, WhoPausesStaysDynamicForThreeFrames) {
   for (int k = 1; k <= 5; ++k) {
     belief = update(resting, belief);
     EXPECT_NEAR(belief.belief[0], std::pow(6.0 / 7.0, k), 1e-5) << "frame " << k;
-    is_dynamic.push_back(belief.belief[0] > fixedOptions().dynamic_belief);
+    is_dynamic.push_back(belief.belief[0] > test::fixedBeliefOptions().dynamic_belief);
   }
   EXPECT_EQ(is_dynamic, (std::vector<bool>{true, true, true, false, false}));
 }
@@ -235,7 +155,7 @@ TEST(MotionBelief, MuchMemoryWeighsNoMoreThanItsCap) {
   // Given 40 points of weight 0.9: 36 full votes, cut to 20, times 2 against 40 * 0.3
   const MotionBelief memory = update(Frame().add(40, 100, 50, 2.0f, 2.0f));
   EXPECT_NEAR(update(Frame().add(40, 100, 50, 2.0f, 0.0f), memory).belief[0], 40.0 / 52.0, 1e-5);
-  MotionBeliefOptions without = fixedOptions();
+  MotionBeliefOptions without = test::fixedBeliefOptions();
   without.memory_gain = 0.0f;
   EXPECT_EQ(update(Frame().add(40, 100, 50, 2.0f, 0.0f), memory, without).belief[0], 0.0f);
 }
@@ -290,7 +210,7 @@ TEST(MotionBelief, WithoutVotesNothingIsKnown) {
     EXPECT_EQ(belief.weight[i], 0.0f);
   }
   // Votes of 0.3 leave a point judged, half of that does not.
-  MotionBeliefOptions options = fixedOptions();
+  MotionBeliefOptions options = test::fixedBeliefOptions();
   options.quiet_weight = 0.19f;
   EXPECT_TRUE(std::isnan(update(Frame().add(100, 50, 2.0f, 0.1f), {}, options).belief[0]));
   options.quiet_weight = 0.21f;
@@ -327,172 +247,6 @@ TEST(MotionBelief, PointsWithoutAPixelTakeNoPart) {
     EXPECT_NEAR(update(Frame().add(100, 50, 2.0f, 0.1f), spoilt).belief[0], memory / (memory + 0.3),
                 1e-5);
   }
-}
-
-/// A frame drawn at random, the points in a given order and moved by (du, dv).
-Frame drawn(const std::vector<int>& order, float du, float dv) {
-  test::Random random(17);
-  Frame all;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    all.add(random.uniformFloat(0, 640) + du, random.uniformFloat(0, 480) + dv,
-            random.uniformFloat(1, 5), random.uniformFloat(0, 2));
-    all.in_box.back() = random.chance(0.7) ? 1 : 0;
-    if (random.chance(0.2)) {
-      all.support(SurfaceSupport::kNone);
-    } else if (random.chance(0.2)) {
-      all.support(SurfaceSupport::kBehind).dragged();
-    }
-    if (random.chance(0.1)) {
-      all.distance.back() = kNaN;
-    }
-  }
-  Frame frame;
-  for (const int index : order) {
-    const auto i = static_cast<std::size_t>(index);
-    frame.add(all.points.u[i], all.points.v[i], all.surface.depth[i], all.distance[i]);
-    frame.surface.support.back() = all.surface.support[i];
-    frame.surface.is_dragged.back() = all.surface.is_dragged[i];
-    frame.in_box.back() = all.in_box[i];
-  }
-  return frame;
-}
-
-/// Two frames' beliefs, the first being the memory of the second.
-MotionBelief beliefOf(const std::vector<int>& order, float du, float dv) {
-  const Frame frame = drawn(order, du, dv);
-  return update(frame, update(frame));
-}
-
-void expectNear(const MotionBelief& actual, const MotionBelief& expected,
-                const std::vector<int>& order) {
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const auto i = static_cast<std::size_t>(order[k]);
-    EXPECT_EQ(std::isnan(actual.belief[k]), std::isnan(expected.belief[i])) << "point " << i;
-    if (!std::isnan(expected.belief[i])) {
-      EXPECT_NEAR(actual.belief[k], expected.belief[i], 1e-4) << "point " << i;
-      EXPECT_NEAR(actual.weight[k], expected.weight[i], 1e-4) << "point " << i;
-    }
-  }
-}
-
-class MotionBeliefProperties : public testing::Test {
- protected:
-  MotionBeliefProperties() : order(300) { std::iota(order.begin(), order.end(), 0); }
-  std::vector<int> order;
-};
-
-TEST_F(MotionBeliefProperties, TheOrderOfThePointsDoesNotMatter) {
-  const MotionBelief expected = beliefOf(order, 0.0f, 0.0f);
-  std::vector<int> shuffled = order;
-  test::Random random(3);
-  for (int k = static_cast<int>(order.size()) - 1; k > 0; --k) {
-    std::swap(shuffled[static_cast<std::size_t>(k)],
-              shuffled[static_cast<std::size_t>(random.integer(0, k))]);
-  }
-  expectNear(beliefOf(shuffled, 0.0f, 0.0f), expected, shuffled);
-}
-
-TEST_F(MotionBeliefProperties, TheFrameMayMoveInTheImage) {
-  expectNear(beliefOf(order, 64.0f, -32.0f), beliefOf(order, 0.0f, 0.0f), order);
-}
-
-TEST_F(MotionBeliefProperties, BeliefsAndWeightsStayInRangeAndRepeatBitForBit) {
-  const MotionBelief first = beliefOf(order, 0.0f, 0.0f);
-  const MotionBelief second = beliefOf(order, 0.0f, 0.0f);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    EXPECT_FALSE(first.belief[i] < 0.0f || first.belief[i] > 1.0f + 1e-6f) << first.belief[i];
-    EXPECT_TRUE(first.weight[i] >= 0.0f && first.weight[i] <= 1.0f) << first.weight[i];
-    EXPECT_TRUE(first.belief[i] == second.belief[i] ||
-                (std::isnan(first.belief[i]) && std::isnan(second.belief[i])));
-    EXPECT_EQ(first.weight[i], second.weight[i]);
-  }
-}
-
-TEST_F(MotionBeliefProperties, AReusedWorkspaceChangesNothing) {
-  const Frame large = drawn(order, 0.0f, 0.0f);
-  const Frame small = Frame().add(100, 50, 2.0f, 2.0f).add(180, 50, 2.0f, 0.1f);
-  const MotionBelief memory = update(large);
-  MotionBeliefWorkspace workspace;
-  for (const Frame* frame : {&large, &small, &large}) {
-    workspace.surface = frame->surface;
-    const MotionBelief reused =
-        updateMotionBelief(frame->input(), memory, fixedOptions(), workspace);
-    const MotionBelief fresh = update(*frame, memory);
-    for (std::size_t i = 0; i < fresh.size(); ++i) {
-      EXPECT_TRUE(reused.belief[i] == fresh.belief[i] ||
-                  (std::isnan(reused.belief[i]) && std::isnan(fresh.belief[i])));
-      EXPECT_EQ(reused.weight[i], fresh.weight[i]);
-    }
-  }
-}
-
-TEST(MotionBelief, UnequalArraysAreNamed) {
-  const auto message = [](auto change) {
-    Frame frame = Frame().add(100, 50, 2.0f, 2.0f);
-    MotionBelief memory = update(frame);
-    change(frame, memory);
-    return test::invalidArgumentOf([&] { update(frame, memory); });
-  };
-  using Memory = MotionBelief;
-  EXPECT_EQ(message([](Frame& f, Memory&) { f.distance.clear(); }),
-            "updateMotionBelief: 1 key points, but 0 distances, 1 labels, 1 flags, 1 earlier "
-            "columns, 1 rows; expected equal sizes (no earlier pixels: 0)");
-  EXPECT_EQ(message([](Frame& f, Memory&) { f.earlier_v.clear(); }),
-            "updateMotionBelief: 1 key points, but 1 distances, 1 labels, 1 flags, 1 earlier "
-            "columns, 0 rows; expected equal sizes (no earlier pixels: 0)");
-  EXPECT_EQ(message([](Frame& f, Memory&) { f.surface.is_dragged.clear(); }),
-            "updateMotionBelief: workspace.surface has 1 points; expected surfaceDepths() of "
-            "these 1");
-  EXPECT_EQ(message([](Frame&, Memory& m) { m.weight.clear(); }),
-            "updateMotionBelief: memory: u has 1 elements, v 1, depth 1, belief 1, weight 0; "
-            "expected equal sizes");
-  EXPECT_EQ(message([](Frame& f, Memory&) { f.points.v.clear(); }),
-            "key points: u has 1 elements, v 0, depth 1; expected equal sizes");
-  EXPECT_EQ(message([](Frame&, Memory&) {}), "nothing thrown");
-}
-
-TEST(MotionBelief, OptionsOutOfRangeAreNamed) {
-  const auto message = [](auto change) {
-    MotionBeliefOptions options = fixedOptions();
-    change(options);
-    return test::invalidArgumentOf([&] { update(Frame(), {}, options); });
-  };
-  using Options = MotionBeliefOptions;
-  EXPECT_EQ(message([](Options& o) { o.sigma = 0.0f; }),
-            "MotionBeliefOptions::sigma is 0.000000; expected a finite value > 0");
-  EXPECT_EQ(message([](Options& o) { o.memory_sigma = kInfinity; }),
-            "MotionBeliefOptions::memory_sigma is inf; expected a finite value > 0");
-  EXPECT_EQ(message([](Options& o) { o.depth_sigma_floor = 0.0f; }),
-            "MotionBeliefOptions::depth_sigma_floor is 0.000000; expected a finite value > 0");
-  EXPECT_EQ(message([](Options& o) { o.depth_sigma_quadratic = kInfinity; }),
-            "MotionBeliefOptions::depth_sigma_quadratic is inf; expected a finite value >= 0 "
-            "(1/m)");
-  EXPECT_EQ(message([](Options& o) { o.unmeasured_depth = kNaN; }),
-            "MotionBeliefOptions::unmeasured_depth is nan; expected a finite value > 0");
-  EXPECT_EQ(message([](Options& o) { o.min_weight = 0.0f; }),
-            "MotionBeliefOptions::min_weight is 0.000000; expected a finite value > 0");
-  EXPECT_EQ(message([](Options& o) { o.weight_cap = -1.0f; }),
-            "MotionBeliefOptions::weight_cap is -1.000000; expected a finite value > 0");
-  EXPECT_EQ(message([](Options& o) { o.still_distance = -0.1f; }),
-            "MotionBeliefOptions::still_distance is -0.100000; expected a value >= 0 (px)");
-  EXPECT_EQ(message([](Options& o) { o.moving_distance = 0.3f; }),
-            "MotionBeliefOptions::moving_distance is 0.300000; expected a finite value above "
-            "still_distance (px)");
-  EXPECT_EQ(message([](Options& o) { o.memory_gain = -1.0f; }),
-            "MotionBeliefOptions::memory_gain is -1.000000; expected a finite value >= 0");
-  EXPECT_EQ(message([](Options& o) { o.dynamic_evidence = 1.5f; }),
-            "MotionBeliefOptions::dynamic_evidence is 1.500000; expected a value in [0, 1]");
-  EXPECT_EQ(message([](Options& o) { o.quiet_weight = -0.5f; }),
-            "MotionBeliefOptions::quiet_weight is -0.500000; expected a value in [0, 1]");
-  EXPECT_EQ(message([](Options& o) { o.inferred_weight = kNaN; }),
-            "MotionBeliefOptions::inferred_weight is nan; expected a value in [0, 1]");
-  EXPECT_EQ(message([](Options& o) { o.dragged_weight = 2.0f; }),
-            "MotionBeliefOptions::dragged_weight is 2.000000; expected a value in [0, 1]");
-  EXPECT_EQ(message([](Options& o) { o.memory_decay = 1.1f; }),
-            "MotionBeliefOptions::memory_decay is 1.100000; expected a value in [0, 1]");
-  EXPECT_EQ(message([](Options& o) { o.dynamic_belief = -1.0f; }),
-            "MotionBeliefOptions::dynamic_belief is -1.000000; expected a value in [0, 1]");
-  EXPECT_EQ(message([](Options&) {}), "nothing thrown");
 }
 
 }  // namespace

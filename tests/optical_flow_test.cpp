@@ -150,6 +150,153 @@ TEST(OpticalFlow, UnrelatedImagesFailTheForwardBackwardCheck) {
   EXPECT_LT(matches.found, points.size() / 2);
 }
 
+TEST(OpticalFlow, AMatchWhoseWindowChangedIsDropped) {
+  // Given an image of which the right half is 30 gray levels brighter in the earlier frame: a match
+  // stays where it is, but its window differs by 30 (clipped at 255, a little less).
+  const cv::Mat current = movedTexture(0, 0);
+  cv::Mat earlier = current.clone();
+  earlier.colRange(kWidth / 2, kWidth) += cv::Scalar(30);
+  OpticalFlowOptions options = fixedOptions();
+  options.window = 11;
+  options.max_level = 0;
+  options.forward_backward = false;
+  KeyPoints points;
+  for (int v = 20; v < 100; v += 8) {
+    points.push_back(30.0f, static_cast<float>(v), 1.0f);
+    points.push_back(130.0f, static_cast<float>(v), 1.0f);
+  }
+
+  // When both are accepted, and when a difference above 12 gray levels is not
+  options.max_difference = 255.0f;
+  const FlowMatches all = track(current, earlier, points, options);
+  options.max_difference = 12.0f;
+  const FlowMatches alike = track(current, earlier, points, options);
+
+  // Then the left half's matches are left, exactly as they were.
+  std::size_t bright = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points.u[i] < kWidth / 2.0f) {
+      EXPECT_EQ(alike.u[i], all.u[i]) << "point " << i;
+      EXPECT_FALSE(std::isnan(alike.u[i])) << "point " << i;
+    } else {
+      EXPECT_TRUE(std::isnan(alike.u[i])) << "point " << i;
+      bright += std::isnan(all.u[i]) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(bright, 0U);
+  EXPECT_EQ(alike.found, points.size() / 2);
+}
+
+/// Tracks with guesses at the true place, moved by (du, dv).
+FlowMatches trackGuessed(const cv::Point2f& shift, const cv::Point2f& error,
+                         const KeyPoints& points, const OpticalFlowOptions& options) {
+  FlowMatches guess;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    guess.u.push_back(points.u[i] - shift.x + error.x);
+    guess.v.push_back(points.v[i] - shift.y + error.y);
+  }
+  const cv::Mat current = movedTexture(static_cast<double>(shift.x), static_cast<double>(shift.y));
+  return trackIntoEarlierFrame(buildFlowPyramid(current, options),
+                               buildFlowPyramid(movedTexture(0, 0), options), points.view(),
+                               options, guess);
+}
+
+std::size_t countRight(const FlowMatches& matches, const KeyPoints& points,
+                       const cv::Point2f& shift) {
+  std::size_t right = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    right += std::hypot(matches.u[i] - points.u[i] + shift.x,
+                        matches.v[i] - points.v[i] + shift.y) < 0.2f
+                 ? 1
+                 : 0;
+  }
+  return right;
+}
+
+TEST(OpticalFlow, AGuessFindsWhatMovedBeyondTheWindow) {
+  // Given a motion of 25 px, where a window of 11 px at level 0 and 1 sees 10 or so
+  OpticalFlowOptions options = fixedOptions();
+  options.window = 11;
+  options.max_level = 1;
+  options.guess_max_level = 1;
+  options.max_difference = 12.0f;
+  const cv::Point2f shift(24.0f, -7.0f);
+  const KeyPoints points = gridPoints(34);
+  const FlowMatches alone =
+      track(movedTexture(static_cast<double>(shift.x), static_cast<double>(shift.y)),
+            movedTexture(0, 0), points, options);
+  EXPECT_LT(countRight(alone, points, shift), points.size() / 10);
+
+  // Then a guess that is 2 px off finds it.
+  const FlowMatches guessed = trackGuessed(shift, {1.5f, -1.5f}, points, options);
+  EXPECT_EQ(countRight(guessed, points, shift), points.size());
+}
+
+TEST(OpticalFlow, AWrongGuessLosesAPointAtWorst) {
+  // Given guesses 30 px off for images that did not move
+  OpticalFlowOptions options = fixedOptions();
+  options.window = 11;
+  options.max_difference = 12.0f;
+  const KeyPoints points = gridPoints(34);
+  const FlowMatches wrong = trackGuessed({0.0f, 0.0f}, {30.0f, 25.0f}, points, options);
+  std::size_t elsewhere = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float error = std::hypot(wrong.u[i] - points.u[i], wrong.v[i] - points.v[i]);
+    elsewhere += error > 1.0f ? 1 : 0;  // false for the lost ones
+  }
+  EXPECT_LE(elsewhere, points.size() / 50);
+}
+
+TEST(OpticalFlow, WithoutAGuessAPointStartsWhereItIs) {
+  // Given guesses that are NaN or outside the image, among good ones
+  OpticalFlowOptions options = fixedOptions();
+  options.guess_max_level = 1;
+  const KeyPoints points = gridPoints(34);
+  const cv::Mat current = movedTexture(2.0, 1.0);
+  const cv::Mat earlier = movedTexture(0.0, 0.0);
+  FlowMatches guess;
+  const std::vector<float> none{kNaN, -1.0f, 1e9f, std::numeric_limits<float>::infinity()};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    guess.u.push_back(none[i % none.size()]);
+    guess.v.push_back(points.v[i]);
+  }
+  FlowMatches own;
+  own.u = points.u;
+  own.v = points.v;
+  const FlowPyramid from = buildFlowPyramid(current, options);
+  const FlowPyramid to = buildFlowPyramid(earlier, options);
+  const FlowMatches a = trackIntoEarlierFrame(from, to, points.view(), options, guess);
+  const FlowMatches b = trackIntoEarlierFrame(from, to, points.view(), options, own);
+  EXPECT_EQ(a.found, points.size());
+  EXPECT_EQ(a.u, b.u);
+  EXPECT_EQ(a.v, b.v);
+}
+
+TEST(OpticalFlow, UnequalGuessesAreRefused) {
+  const OpticalFlowOptions options = fixedOptions();
+  const KeyPoints points = gridPoints(56);
+  const FlowPyramid pyramid = buildFlowPyramid(movedTexture(0, 0), options);
+  const auto message = [&](std::size_t columns, std::size_t rows) {
+    FlowMatches guess;
+    guess.u.assign(columns, 60.0f);
+    guess.v.assign(rows, 60.0f);
+    return test::invalidArgumentOf(
+        [&] { trackIntoEarlierFrame(pyramid, pyramid, points.view(), options, guess); });
+  };
+  const std::string n = std::to_string(points.size());
+  EXPECT_EQ(message(3, points.size()), "trackIntoEarlierFrame: " + n +
+                                           " key points, but guesses for 3 columns and " + n +
+                                           " rows; expected equal sizes, or none");
+  EXPECT_EQ(message(points.size(), 0), "trackIntoEarlierFrame: " + n +
+                                           " key points, but guesses for " + n +
+                                           " columns and 0 rows; expected equal sizes, or none");
+  EXPECT_EQ(message(0, 3), "trackIntoEarlierFrame: " + n +
+                               " key points, but guesses for 0 columns and 3 rows; expected equal "
+                               "sizes, or none");
+  EXPECT_EQ(message(points.size(), points.size()), "nothing thrown");
+  EXPECT_EQ(message(0, 0), "nothing thrown");
+}
+
 TEST(OpticalFlow, FoundCountsWhatIsNotNaN) {
   const KeyPoints points = gridPoints(0);
   const FlowMatches matches = track(movedTexture(5.0, 5.0), movedTexture(0, 0), points);
@@ -259,6 +406,12 @@ TEST(OpticalFlow, OptionsOutOfRangeAreNamed) {
             "OpticalFlowOptions::max_iterations is 0.000000; expected a count >= 1");
   EXPECT_EQ(message([](Options& o) { o.epsilon = 0.0f; }),
             "OpticalFlowOptions::epsilon is 0.000000; expected a value > 0 (px)");
+  EXPECT_EQ(message([](Options& o) { o.guess_max_level = -1; }),
+            "OpticalFlowOptions::guess_max_level is -1.000000; expected a level >= 0");
+  EXPECT_EQ(message([](Options& o) { o.max_difference = 0.0f; }),
+            "OpticalFlowOptions::max_difference is 0.000000; expected a value > 0 (gray levels)");
+  EXPECT_EQ(message([](Options& o) { o.max_difference = kNaN; }),
+            "OpticalFlowOptions::max_difference is nan; expected a value > 0 (gray levels)");
   EXPECT_EQ(message([](Options& o) { o.max_forward_backward_error = kNaN; }),
             "OpticalFlowOptions::max_forward_backward_error is nan; expected a value > 0 (px)");
   EXPECT_EQ(message([](Options&) {}), "nothing thrown");
