@@ -27,7 +27,9 @@ class FolderSource : public testing::Test {
     return reopen();
   }
   TumFolderSource reopen() {
-    return {folder_.path(), {}, loadCamera((folder_.path() / "calibration.yaml").string()),
+    return {folder_.path(),
+            {},
+            loadCamera((folder_.path() / "calibration.yaml").string()),
             [this](const std::string& line) { reports_.push_back(line); }};
   }
   static std::vector<std::size_t> indices(TumFolderSource& source) {

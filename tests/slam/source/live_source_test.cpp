@@ -127,8 +127,8 @@ TEST_F(Live, FramesThatCannotBeUsedAreLeftOutAndTheFirstOfARowIsReported) {
 }
 
 TEST_F(Live, StampsThatStandStillGoBackOrAreNoNumbersAreLeftOut) {
-  LiveSource live = source({good(5.0), good(5.0), good(4.0),
-                            good(std::numeric_limits<double>::quiet_NaN()), good(6.0)});
+  LiveSource live = source(
+      {good(5.0), good(5.0), good(4.0), good(std::numeric_limits<double>::quiet_NaN()), good(6.0)});
   EXPECT_DOUBLE_EQ(live.next().value().timestamp, 5.0);
   EXPECT_DOUBLE_EQ(live.next().value().timestamp, 6.0);
   EXPECT_EQ(live.counts().unreadable, 3U);
@@ -155,16 +155,18 @@ TEST_F(Live, RefusesANullCameraAndABadOption) {
 }
 
 TEST(OpenDepthCamera, RefusesAnUnknownBackendAndANegativeIndex) {
-  const std::string message = hmcdyn::test::messageOf<std::invalid_argument>(
-      [] { openDepthCamera({"webcam", 0}); });
+  const std::string message = hmcdyn::test::messageOf<std::invalid_argument>([] {
+    openDepthCamera({"webcam", 0});
+  });
   EXPECT_TRUE(hmcdyn::test::mentions(message, {"webcam", "openni2", "realsense"}));
   EXPECT_THROW(openDepthCamera({"openni2", -1}), std::invalid_argument);
 }
 
 TEST(OpenDepthCamera, AMissingCameraIsNamed) {
   // No machine has a thousand cameras: not found, or OpenCV was built without the backend.
-  const std::string message =
-      hmcdyn::test::messageOf<std::runtime_error>([] { openDepthCamera({"openni2", 999}); });
+  const std::string message = hmcdyn::test::messageOf<std::runtime_error>([] {
+    openDepthCamera({"openni2", 999});
+  });
   EXPECT_TRUE(hmcdyn::test::mentions(message, {"OpenNI2 camera 999"}));
 }
 
