@@ -122,6 +122,12 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
                  "Overlap (intersection over union) above which the weaker box goes, 0..1")
       ->capture_default_str()
       ->group("Detection");
+  app.add_option("--bridge", options.bridge,
+                 "A box that the detector missed is carried on by optical flow for so long (s); "
+                 "0 = never")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group("Detection");
   app.add_option_function<std::string>(
          "--classes",
          [&detector](const std::string& list) { detector.classes = parseClasses(list); },

@@ -7,12 +7,28 @@
 #include "slam/detection/detector_factory.hpp"
 
 namespace hmcdyn::slam {
+namespace {
+
+std::optional<BoxCarrier> makeCarrier(const SlamOptions& options) {
+  BoxCarrierOptions carrier;
+  carrier.max_bridge = options.bridge;
+  if (options.detector.type == "file") {
+    carrier.duplicate_overlap = 1.0f;  // boxes from a file are taken as they are
+  }
+  BoxCarrier checked(carrier);
+  const bool carries = options.mode == RunMode::kRealtime || options.bridge > 0.0;
+  return options.detector.type != "none" && carries ? std::optional(std::move(checked))
+                                                    : std::nullopt;
+}
+
+}  // namespace
 
 DetectionFeed::DetectionFeed(const SlamOptions& options, const Rectifier& rectifier, Report report)
     : realtime_(options.mode == RunMode::kRealtime),
       boxes_are_raw_(options.detector.type == "file"),
       rectifier_(rectifier),
-      thread_(makeDetector(options.detector), std::move(report)) {}
+      thread_(makeDetector(options.detector), std::move(report)),
+      carrier_(makeCarrier(options)) {}
 
 std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> boxes) const {
   if (boxes_are_raw_) {
@@ -41,12 +57,22 @@ FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
   } else {
     detection = thread_.take();
   }
+  std::optional<FrameDetection> said;
   if (detection) {
-    result.boxes = rectified(std::move(detection->boxes));
     result.detected = !detection->failed && detection->frame == frame.raw.index;
     result.detect_wall_ms = detection->wall_ms;
     result.detect_cpu_ms = detection->cpu_ms;
+    if (!detection->failed) {
+      said = FrameDetection{detection->frame, rectified(std::move(detection->boxes))};
+    }
   }
+  const StageTimer timer;
+  if (carrier_) {
+    result.boxes = carrier_->update(frame.image, said);
+  } else if (said) {
+    result.boxes = std::move(said->boxes);
+  }
+  result.carry_time = timer.elapsed("carry");
   return result;
 }
 

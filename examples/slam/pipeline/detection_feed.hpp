@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
+#include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detection_thread.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
@@ -16,7 +17,7 @@ namespace hmcdyn::slam {
 /// A frame as it came and as it is tracked.
 struct PreparedFrame {
   RgbdFrame raw;
-  RgbdFrame image;         ///< Undistorted; the same images where there is no distortion.
+  RgbdFrame image;  ///< Undistorted; the same images where there is no distortion.
   StageTime rectify_time;
 };
 
@@ -26,10 +27,12 @@ struct FrameBoxes {
   bool detected = false;            ///< By the detector in this very frame; else carried on.
   double detect_wall_ms = 0.0;      ///< Of the detector's thread; 0 without an answer.
   double detect_cpu_ms = 0.0;
+  StageTime carry_time;  ///< What carrying boxes on took.
 };
 
 /// The boxes of each frame. Offline every frame waits for its own detection; in real time none
-/// waits, and boxes of an earlier frame are carried on.
+/// waits, and boxes of an earlier frame are carried to the present. Boxes that the detector missed
+/// are bridged in both (SlamOptions::bridge).
 class DetectionFeed {
  public:
   /// @throws std::invalid_argument or std::runtime_error where the detector cannot be used.
@@ -51,6 +54,7 @@ class DetectionFeed {
   bool boxes_are_raw_;  ///< Boxes from a file refer to the image as the camera saw it.
   Rectifier rectifier_;
   DetectionThread thread_;
+  std::optional<BoxCarrier> carrier_;  ///< Nothing where no box is ever to be carried.
 };
 
 }  // namespace hmcdyn::slam

@@ -98,6 +98,7 @@ FrameOutcome trackFrame(const PreparedFrame& frame, DetectionFeed& detections,
   StageTimes before;
   before.add(frame.rectify_time);
   before.add({"detect", boxes.detect_wall_ms, boxes.detect_cpu_ms});
+  before.add(boxes.carry_time);
   FrameOutcome outcome = pipeline.process(frame.image, std::move(boxes.boxes));
   outcome.times.prepend(before);
   return outcome;
