@@ -17,8 +17,17 @@ std::optional<BoxCarrier> makeCarrier(const SlamOptions& options) {
   }
   BoxCarrier checked(carrier);
   const bool carries = options.mode == RunMode::kRealtime || options.bridge > 0.0;
-  return options.detector.type != "none" && carries ? std::optional(std::move(checked))
-                                                    : std::nullopt;
+  const bool detects = options.detector.type != "none" && options.detector.type != "motion";
+  return detects && carries ? std::optional(std::move(checked)) : std::nullopt;
+}
+
+std::optional<MotionRegions> makeRegions(const SlamOptions& options) {
+  if (options.detector.type != "motion") {
+    return std::nullopt;
+  }
+  MotionRegionOptions regions;
+  regions.seed = options.seed;
+  return MotionRegions(regions);
 }
 
 }  // namespace
@@ -28,6 +37,7 @@ DetectionFeed::DetectionFeed(const SlamOptions& options, const Rectifier& rectif
       boxes_are_raw_(options.detector.type == "file"),
       rectifier_(rectifier),
       thread_(makeDetector(options.detector), std::move(report)),
+      regions_(makeRegions(options)),
       carrier_(makeCarrier(options)) {}
 
 std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> boxes) const {
@@ -40,6 +50,9 @@ std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> box
 }
 
 void DetectionFeed::ask(const PreparedFrame& frame) {
+  if (regions_) {
+    return;
+  }
   DetectionRequest request{frame.raw.index, frame.raw.timestamp,
                            boxes_are_raw_ ? frame.raw.bgr : frame.image.bgr};
   if (realtime_) {
@@ -51,6 +64,13 @@ void DetectionFeed::ask(const PreparedFrame& frame) {
 
 FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
   FrameBoxes result;
+  if (regions_) {
+    const StageTimer timer;
+    result.boxes = regions_->update(frame.image);
+    result.detected = true;
+    result.carry_time = timer.elapsed("carry");
+    return result;
+  }
   std::optional<Detection> detection;
   if (realtime_) {
     detection = thread_.tryTakeNewest();

@@ -9,6 +9,7 @@
 #include "slam/dataset/frame.hpp"
 #include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detection_thread.hpp"
+#include "slam/detection/motion_regions.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
 
@@ -27,7 +28,7 @@ struct FrameBoxes {
   bool detected = false;            ///< By the detector in this very frame; else carried on.
   double detect_wall_ms = 0.0;      ///< Of the detector's thread; 0 without an answer.
   double detect_cpu_ms = 0.0;
-  StageTime carry_time;  ///< What carrying boxes on took.
+  StageTime carry_time;  ///< What carrying boxes on, or finding regions, took.
 };
 
 /// The boxes of each frame. Offline every frame waits for its own detection; in real time none
@@ -54,7 +55,8 @@ class DetectionFeed {
   bool boxes_are_raw_;  ///< Boxes from a file refer to the image as the camera saw it.
   Rectifier rectifier_;
   DetectionThread thread_;
-  std::optional<BoxCarrier> carrier_;  ///< Nothing where no box is ever to be carried.
+  std::optional<MotionRegions> regions_;  ///< Instead of a detector.
+  std::optional<BoxCarrier> carrier_;     ///< Nothing where no box is ever to be carried.
 };
 
 }  // namespace hmcdyn::slam
