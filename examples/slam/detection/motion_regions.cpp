@@ -120,7 +120,7 @@ KeyPoints gridOver(const cv::Mat& depth, int step) {
 
 /// Distances (px of the whole image) of the points from where static ones could be; NaN = unknown.
 std::vector<float> distancesOf(const KeyPoints& points, const FlowMatches& matches,
-                               std::uint32_t seed) {
+                               const MotionRegionOptions& region) {
   const auto whole = [](std::vector<float> values) {
     std::transform(values.begin(), values.end(), values.begin(),
                    [](float value) { return value / kHalf; });
@@ -132,7 +132,8 @@ std::vector<float> distancesOf(const KeyPoints& points, const FlowMatches& match
   const std::vector<float> current_v = whole(points.v);
   const PointPairsView pairs{earlier_u, earlier_v, current_u, current_v};
   MotionModelOptions options;
-  options.seed = seed;
+  options.max_iterations = region.max_iterations;
+  options.seed = region.seed;
   return modelDistances(estimateMotionModel(pairs, {}, options).model, pairs);
 }
 
@@ -260,7 +261,7 @@ std::vector<DetectionBox> MotionRegions::update(const RgbdFrame& frame) {
     const KeyPoints points = gridOver(frame.depth, options_.grid_step);
     const FlowMatches matches =
         trackIntoEarlierFrame(now.pyramid, earlier->pyramid, points.view(), options_.flow);
-    evidence = evidenceOf(segments, points, distancesOf(points, matches, options_.seed), options_);
+    evidence = evidenceOf(segments, points, distancesOf(points, matches, options_), options_);
   }
   std::vector<DetectionBox> moving;
   std::vector<DetectionBox> still;

@@ -35,6 +35,7 @@ struct MotionRegionOptions {
   double max_pause = 0.7;       ///< A region that moved stays while it pauses, for so long (s).
   float remembered_iou = 0.3f;  ///< Least overlap with a region of the frame before.
   float margin = 4.0f;          ///< Regions are widened by this (px): depth borders are ragged.
+  int max_iterations = 200;     ///< Of the robust estimator of the camera's motion.
   std::uint32_t seed = 1;       ///< Of the model's draws.
   OpticalFlowOptions flow;
 };
