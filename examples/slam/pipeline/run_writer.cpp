@@ -63,7 +63,7 @@ std::vector<ReportFrame> evaluated(std::vector<ReportFrame> frames,
 }  // namespace
 
 std::vector<std::string> frameStages() {
-  return {"rectify", "detect", "features", "filter", "track", "map"};
+  return {"rectify", "detect", "carry", "features", "filter", "track", "map"};
 }
 
 RunWriter::RunWriter(const SlamOptions& options)
