@@ -168,14 +168,6 @@ done
 mkdir -p "$output"
 exec 9>"$output/.lock"
 flock --nonblock 9 || fail "another call with --output $output is still running"
-# Runs with other options must not stand in one table.
-options_file=$output/options.txt
-printf '%s\n' "${slam_options[@]}" >"$options_file.new"
-if [[ -f $options_file ]] && ! cmp -s "$options_file" "$options_file.new"; then
-  fail "$output has runs with other options of hmcdyn_slam: $(paste -sd' ' "$options_file"); choose another --output"
-fi
-mv "$options_file.new" "$options_file"
-
 # The sequences.
 found=()
 if $rendered; then
@@ -204,6 +196,14 @@ for sequence in "${found[@]}"; do
   $own_detector || [[ -f $sequence/boxes.txt ]] ||
     fail "$sequence: no boxes.txt; name a detector after --, see --help"
 done
+
+# Runs with other options must not stand in one table.
+options_file=$output/options.txt
+printf '%s\n' "${slam_options[@]}" >"$options_file.new"
+if [[ -f $options_file ]] && ! cmp -s "$options_file" "$options_file.new"; then
+  fail "$output has runs with other options of hmcdyn_slam: $(paste -sd' ' "$options_file"); choose another --output"
+fi
+mv "$options_file.new" "$options_file"
 
 # What is left to do.
 todo=$output/todo.txt

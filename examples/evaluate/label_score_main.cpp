@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
       "still. A FAST\ncorner is decided by a ring of 3 px at its pyramid level: within that of a "
       "silhouette it is made of\nboth sides and lies on neither. --margin 2 scores more of them, "
       "and is what earlier figures used;\ngive both, as the ring leaves out the hardest points. "
-      "A suspect counts as static.\n"
+      "What is not called dynamic counts as static.\n"
       "Example: hmcdyn_label_score walking_xyz:out/keypoints.csv\n"
       "Exit code: 0 done, 1 a file is missing or malformed, 2 wrong usage.");
   app.add_option("runs", arguments.runs, "Sequence folder and key points of a run")
