@@ -5,11 +5,13 @@ set(HMCDYN_INCLUDE_DIR "${PROJECT_SOURCE_DIR}/include")
 
 # In the order in which a frame's data flows.
 set(HMCDYN_CORE_HEADERS
+    version.hpp
     span.hpp
     types.hpp
     epipolar.hpp
     ego_motion.hpp
     box_dynamism.hpp
+    regions.hpp
     clustering.hpp
     cluster_filter.hpp
     weights.hpp
@@ -27,34 +29,61 @@ set(HMCDYN_CORE_HEADERS
     detail/minkowski.hpp
     detail/planar_points.hpp
     detail/union_find.hpp)
-set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp dynamic_feature_filter.hpp)
+set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp label_image.hpp
+                          dynamic_feature_filter.hpp)
 set(HMCDYN_OPTIMIZATION_HEADERS pose_refinement.hpp)
 
+# hmcdyn_component(NAME TARGET): what every component's target shares, built or installed.
+function(hmcdyn_component name target)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  add_library(hmcdyn::${name} ALIAS ${target})
+  get_target_property(type ${target} TYPE)
+  if(NOT type STREQUAL "INTERFACE_LIBRARY")
+    # While the version is 0.x, every minor version may break the binary interface.
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION}
+                          SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+  endif()
+endfunction()
+
 add_library(hmcdyn_core INTERFACE)
-target_include_directories(hmcdyn_core INTERFACE "$<BUILD_INTERFACE:${HMCDYN_INCLUDE_DIR}>")
+target_include_directories(hmcdyn_core INTERFACE "$<BUILD_INTERFACE:${HMCDYN_INCLUDE_DIR}>"
+                                                 "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
 target_link_libraries(hmcdyn_core INTERFACE Eigen3::Eigen nanoflann::nanoflann)
 target_compile_features(hmcdyn_core INTERFACE cxx_std_17)
-add_library(hmcdyn::core ALIAS hmcdyn_core)
+hmcdyn_component(core hmcdyn_core)
+set(HMCDYN_COMPONENTS core)
 
-add_library(hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/flow_selection.cpp src/fundamental.cpp
-                          src/dynamic_feature_filter.cpp)
-target_link_libraries(
-  hmcdyn_vision
-  PUBLIC hmcdyn_core opencv_core
-  PRIVATE opencv_imgproc opencv_video opencv_calib3d hmcdyn_warnings)
-add_library(hmcdyn::vision ALIAS hmcdyn_vision)
+if(HMCDYN_WITH_VISION)
+  add_library(
+    hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/flow_selection.cpp
+                  src/fundamental.cpp src/label_image.cpp src/dynamic_feature_filter.cpp)
+  target_link_libraries(
+    hmcdyn_vision
+    PUBLIC hmcdyn_core opencv_core
+    PRIVATE opencv_imgproc opencv_video opencv_calib3d $<BUILD_INTERFACE:hmcdyn_warnings>)
+  hmcdyn_component(vision hmcdyn_vision)
+  list(APPEND HMCDYN_COMPONENTS vision)
+endif()
 
-add_library(
-  hmcdyn_optimization
-  src/pose_refinement.cpp src/pose_refinement_collapsed.cpp src/pose_refinement_input.cpp
-  src/pose_refinement_kernel.cpp src/pose_refinement_plain.cpp src/pose_refinement_solver.cpp)
-# The square root as one instruction: errno is not read. Sums keep the order that is written.
-set_source_files_properties(src/pose_refinement_kernel.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
-target_link_libraries(hmcdyn_optimization PUBLIC hmcdyn::core
-                                          PRIVATE ${CERES_LIBRARIES} hmcdyn_warnings)
-add_library(hmcdyn::optimization ALIAS hmcdyn_optimization)
+if(HMCDYN_WITH_OPTIMIZATION)
+  add_library(
+    hmcdyn_optimization
+    src/pose_refinement.cpp src/pose_refinement_collapsed.cpp src/pose_refinement_input.cpp
+    src/pose_refinement_kernel.cpp src/pose_refinement_plain.cpp src/pose_refinement_solver.cpp)
+  # The square root as one instruction: errno is not read. Sums keep the order that is written.
+  set_source_files_properties(src/pose_refinement_kernel.cpp PROPERTIES COMPILE_OPTIONS
+                                                                        -fno-math-errno)
+  target_link_libraries(
+    hmcdyn_optimization
+    PUBLIC hmcdyn_core
+    PRIVATE ${CERES_LIBRARIES} $<BUILD_INTERFACE:hmcdyn_warnings>)
+  hmcdyn_component(optimization hmcdyn_optimization)
+  list(APPEND HMCDYN_COMPONENTS optimization)
+endif()
 
-# The whole library; hmcdyn.hpp includes all of it.
+# All that was built; hmcdyn.hpp includes all there is, and so needs every component.
 add_library(hmcdyn INTERFACE)
-target_link_libraries(hmcdyn INTERFACE hmcdyn_core hmcdyn_vision hmcdyn_optimization)
-add_library(hmcdyn::hmcdyn ALIAS hmcdyn)
+foreach(component IN LISTS HMCDYN_COMPONENTS)
+  target_link_libraries(hmcdyn INTERFACE hmcdyn_${component})
+endforeach()
+hmcdyn_component(hmcdyn hmcdyn)

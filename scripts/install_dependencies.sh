@@ -18,7 +18,7 @@ USAGE
 }
 
 packages=(
-  g++ cmake ninja-build git
+  g++ cmake ninja-build git pkg-config
   libeigen3-dev libnanoflann-dev # the library's core
   libopencv-dev                  # images, optical flow, robust estimation, object detection
   libceres-dev                   # optimisation

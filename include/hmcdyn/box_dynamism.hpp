@@ -61,9 +61,11 @@ inline std::uint32_t pointsInBox(const KeyPointsView& points, std::size_t first,
   std::uint32_t bits = 0;
   for (std::uint32_t i = 0; i < kBlock; ++i) {
     // Not box.contains(): without shortcuts, the loop vectorises.
+    // NOLINTBEGIN(readability-implicit-bool-conversion,clang-diagnostic-bitwise-instead-of-logical)
     const bool columns = (u[i] >= box.x_min) & (u[i] <= box.x_max);
     const bool rows = (v[i] >= box.y_min) & (v[i] <= box.y_max);
     bits |= (columns & rows) ? kBits.bit[i] : 0;
+    // NOLINTEND(readability-implicit-bool-conversion,clang-diagnostic-bitwise-instead-of-logical)
   }
   return bits;
 }

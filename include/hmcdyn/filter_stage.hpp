@@ -165,6 +165,8 @@ LanedSum sumOf(std::size_t n, Value&& value, Counts&& counts) {
 /// Standard deviation of the depths that are there; 0 without any.
 inline float depthDeviation(Span<const float> depth) {
   const auto usable = [depth](std::size_t i) {
+    // NOLINTNEXTLINE(readability-implicit-bool-conversion,clang-diagnostic-bitwise-instead-of-logical):
+    // no branch
     return (depth[i] > 0.0f) & (depth[i] <= std::numeric_limits<float>::max());
   };
   const LanedSum sum = sumOf(

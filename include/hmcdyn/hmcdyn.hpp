@@ -3,12 +3,15 @@
 #pragma once
 
 // clang-format off
+#include <hmcdyn/version.hpp>
 #include <hmcdyn/types.hpp>
 #include <hmcdyn/optical_flow.hpp>
 #include <hmcdyn/fundamental.hpp>
 #include <hmcdyn/epipolar.hpp>
 #include <hmcdyn/ego_motion.hpp>
 #include <hmcdyn/box_dynamism.hpp>
+#include <hmcdyn/regions.hpp>
+#include <hmcdyn/label_image.hpp>
 #include <hmcdyn/clustering.hpp>
 #include <hmcdyn/cluster_filter.hpp>
 #include <hmcdyn/weights.hpp>

@@ -141,16 +141,16 @@ class DepthWindow {
   }
   /// Moves the depths up to `limit` to the front and says how many they are.
   std::size_t partition(float limit) {
-    const auto end = depth_.begin() + static_cast<std::ptrdiff_t>(count_);
+    auto* const end = depth_.data() + static_cast<std::ptrdiff_t>(count_);
     return static_cast<std::size_t>(
-        std::partition(depth_.begin(), end, [limit](float z) { return z <= limit; }) -
-        depth_.begin());
+        std::partition(depth_.data(), end, [limit](float z) { return z <= limit; }) -
+        depth_.data());
   }
   /// Median of the depths [from, to), the farther of the two middle ones of an even number.
   float median(std::size_t from, std::size_t to) {
-    const auto first = depth_.begin() + static_cast<std::ptrdiff_t>(from);
-    const auto last = depth_.begin() + static_cast<std::ptrdiff_t>(to);
-    const auto middle = first + (last - first) / 2;
+    auto* const first = depth_.data() + static_cast<std::ptrdiff_t>(from);
+    auto* const last = depth_.data() + static_cast<std::ptrdiff_t>(to);
+    auto* const middle = first + (last - first) / 2;
     std::nth_element(first, middle, last);
     return *middle;
   }

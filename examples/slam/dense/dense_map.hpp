@@ -41,7 +41,7 @@ class DenseMap {
 
  private:
   struct Kept {
-    std::size_t number;  // of the call to add()
+    std::size_t number = 0;  // of the call to add()
     ThinnedKeyFrame images;
   };
 

@@ -25,6 +25,7 @@ Eigen::Matrix3d inverseLeftJacobian(const Eigen::Vector3d& phi) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(modernize-pass-by-value): Eigen types are not passed by value
 PoseGraphCost::PoseGraphCost(const Eigen::Isometry3d& to_from, const Matrix6d& square_root)
     : from_to_(to_from.inverse()), square_root_(square_root) {
   set_num_residuals(6);

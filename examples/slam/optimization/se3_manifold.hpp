@@ -8,9 +8,11 @@
 
 // Manifold came with Ceres 2.1, LocalParameterization left with 2.2.
 #if CERES_VERSION_MAJOR > 2 || (CERES_VERSION_MAJOR == 2 && CERES_VERSION_MINOR >= 1)
+// NOLINTNEXTLINE(cppcoreguidelines-macro-usage): the preprocessor asks for it
 #define HMCDYN_SLAM_CERES_HAS_MANIFOLD 1
 #include <ceres/manifold.h>
 #else
+// NOLINTNEXTLINE(cppcoreguidelines-macro-usage)
 #define HMCDYN_SLAM_CERES_HAS_MANIFOLD 0
 #include <ceres/local_parameterization.h>
 #endif

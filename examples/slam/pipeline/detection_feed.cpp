@@ -8,10 +8,10 @@
 
 namespace hmcdyn::slam {
 
-DetectionFeed::DetectionFeed(const SlamOptions& options, const Rectifier& rectifier, Report report)
+DetectionFeed::DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report)
     : realtime_(options.mode == RunMode::kRealtime),
       boxes_are_raw_(options.detector.type == "file"),
-      rectifier_(rectifier),
+      rectifier_(std::move(rectifier)),
       carrier_(options.carrier),
       thread_(makeDetector(options.detector), std::move(report)) {}
 

@@ -34,7 +34,7 @@ struct FrameBoxes {
 class DetectionFeed {
  public:
   /// @throws std::invalid_argument or std::runtime_error where the detector cannot be used.
-  DetectionFeed(const SlamOptions& options, const Rectifier& rectifier, Report report);
+  DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report);
 
   /// Offline: asks for a frame, at most one ahead of the frame whose boxes are taken.
   void ask(const PreparedFrame& frame);

@@ -16,10 +16,12 @@ double coveredShare(Span<const DetectionBox> boxes, const cv::Size& image) {
   int covered = 0;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      const auto u = static_cast<float>(column * kRaster + kRaster / 2);
-      const auto v = static_cast<float>(row * kRaster + kRaster / 2);
+      const int u = column * kRaster + kRaster / 2;
+      const int v = row * kRaster + kRaster / 2;
       covered += std::any_of(boxes.begin(), boxes.end(),
-                             [&](const DetectionBox& box) { return box.contains(u, v); })
+                             [&](const DetectionBox& box) {
+                               return box.contains(static_cast<float>(u), static_cast<float>(v));
+                             })
                      ? 1
                      : 0;
     }

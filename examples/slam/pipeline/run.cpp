@@ -159,8 +159,8 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop) {
     warn(warning);
   }
   const std::filesystem::path groundtruth = groundtruthFile(options);
-  const nlohmann::json summary = summarizeRun(options, {source->name(), detections.detectorName()},
-                                              counts, pipeline, times, groundtruth);
+  nlohmann::json summary = summarizeRun(options, {source->name(), detections.detectorName()},
+                                        counts, pipeline, times, groundtruth);
   writer.writeSummary(summary);
   writer.writeReport(summary, groundtruth, options);
   return summary;

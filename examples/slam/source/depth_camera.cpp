@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 #include <opencv2/videoio.hpp>
@@ -39,8 +38,8 @@ double secondsSince1970() {
 
 class VideoIoCamera final : public DepthCamera {
  public:
-  VideoIoCamera(const Backend& backend, int index, cv::VideoCapture capture)
-      : backend_(backend), index_(index), capture_(std::move(capture)) {}
+  VideoIoCamera(const Backend& backend, int index, const cv::VideoCapture& capture)
+      : backend_(backend), index_(index), capture_(capture) {}
 
   std::optional<CameraImages> read() override {
     if (!capture_.grab()) {
@@ -62,7 +61,7 @@ class VideoIoCamera final : public DepthCamera {
  private:
   Backend backend_;
   int index_;
-  cv::VideoCapture capture_;
+  cv::VideoCapture capture_;  ///< Copies share the device.
 };
 
 const Backend& findBackend(const std::string& name) {
@@ -118,7 +117,7 @@ std::unique_ptr<DepthCamera> openDepthCamera(const DepthCameraOptions& options) 
         fmt::format("{} camera {}: cannot register its depth to the colour image", backend.title,
                     options.index));
   }
-  return std::make_unique<VideoIoCamera>(backend, options.index, std::move(capture));
+  return std::make_unique<VideoIoCamera>(backend, options.index, capture);
 }
 
 }  // namespace hmcdyn::slam

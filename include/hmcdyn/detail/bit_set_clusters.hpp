@@ -28,7 +28,7 @@ struct BitSetWorkspace {
 /// Smallest value among the points of a block whose bit is set; infinity without any.
 inline float smallestOfBlock(std::uint32_t bits, const float* value) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  std::array<float, kBlock> low;
+  std::array<float, kBlock> low;  // NOLINT(cppcoreguidelines-pro-type-member-init): written next
   for (std::size_t i = 0; i < kBlock; ++i) {
     low[i] = (bits & kBits.bit[i]) != 0 ? value[i] : kInfinity;
   }

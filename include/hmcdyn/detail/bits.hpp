@@ -64,8 +64,10 @@ inline std::uint32_t highestOne(std::uint64_t bits) noexcept {
 /// highest bit of index with one of the columns' and rotates the rows' index, so that all passes
 /// are one loop, which vectorises.
 inline void transpose32(const std::uint32_t* from, std::uint32_t* to) noexcept {
+  // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init): all of it is written before it is read
   std::array<std::uint32_t, 32> in;
   std::array<std::uint32_t, 32> out;
+  // NOLINTEND(cppcoreguidelines-pro-type-member-init)
   std::copy(from, from + 32, in.begin());
   std::uint32_t mask = 0x0000ffffU;
   for (std::uint32_t shift = 16; shift > 0; shift /= 2) {

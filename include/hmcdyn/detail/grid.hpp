@@ -42,8 +42,8 @@ struct Range {
 
 /// Over the coordinates that are there; low > high without any.
 inline Range rangeOf(const std::vector<float>& values) {
-  std::array<float, kLanes> low;
-  std::array<float, kLanes> high;
+  std::array<float, kLanes> low{};
+  std::array<float, kLanes> high{};
   low.fill(std::numeric_limits<float>::infinity());
   high.fill(-std::numeric_limits<float>::infinity());
   for (std::size_t block = 0; block < values.size(); block += kLanes) {

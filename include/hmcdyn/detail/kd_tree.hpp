@@ -18,6 +18,15 @@ using NanoflannSearchParameters = nanoflann::SearchParameters;  // renamed in 1.
 using NanoflannSearchParameters = nanoflann::SearchParams;
 #endif
 
+/// Squared Euclidean distance, indices of 32 bits.
+#if NANOFLANN_VERSION >= 0x140
+template <class Cloud>
+using NanoflannMetric = nanoflann::L2_Simple_Adaptor<float, Cloud, float, std::uint32_t>;
+#else
+template <class Cloud>  // until 1.4 the metric did not know the index type
+using NanoflannMetric = nanoflann::L2_Simple_Adaptor<float, Cloud, float>;
+#endif
+
 /// A kd-tree over the columns of a D-by-N matrix that outlives it.
 class KdTree {
  public:
@@ -75,7 +84,7 @@ class KdTree {
     void sort() const {}
   };
 
-  using Metric = nanoflann::L2_Simple_Adaptor<float, Cloud, float, std::uint32_t>;
+  using Metric = NanoflannMetric<Cloud>;
   using Index = nanoflann::KDTreeSingleIndexAdaptor<Metric, Cloud, -1, std::uint32_t>;
 
   Cloud cloud_;

@@ -211,6 +211,7 @@ TEST(Worker, ServesSeveralProducersAtOnce) {
   std::vector<std::thread> producers;
   constexpr int kProducers = 4;
   constexpr int kJobs = 200;
+  producers.reserve(kProducers);
   for (int p = 0; p < kProducers; ++p) {
     producers.emplace_back([&worker, p] {
       for (int i = 0; i < kJobs; ++i) {

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# `cpack -G DEB` in the build folder: three Debian packages. hmcdyn-tools: the programs;
+# libhmcdyn-core-dev: the headers of core, without OpenCV or Ceres; libhmcdyn-dev: all the rest.
+
+set(CPACK_PACKAGE_NAME hmcdyn)
+set(CPACK_PACKAGE_VENDOR "The hmcdyn authors")
+set(CPACK_PACKAGE_CONTACT "The hmcdyn authors <hmcdyn@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL core_dev)
+if(HMCDYN_WITH_VISION OR HMCDYN_WITH_OPTIMIZATION)
+  list(APPEND CPACK_COMPONENTS_ALL dev)
+endif()
+if(HMCDYN_BUILD_EXAMPLES AND HMCDYN_COMPLETE)
+  list(APPEND CPACK_COMPONENTS_ALL tools)
+endif()
+
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+
+set(CPACK_COMPONENT_CORE_DEV_DESCRIPTION "Headers of hmcdyn's core")
+set(CPACK_DEBIAN_CORE_DEV_PACKAGE_NAME libhmcdyn-core-dev)
+set(CPACK_DEBIAN_CORE_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_CORE_DEV_PACKAGE_DEPENDS "libeigen3-dev (>= 3.3), libnanoflann-dev (>= 1.3)")
+
+set(dev_depends "libhmcdyn-core-dev (= ${PROJECT_VERSION})")
+if(HMCDYN_WITH_VISION)
+  string(APPEND dev_depends ", libopencv-dev (>= 4.2)")
+endif()
+if(HMCDYN_WITH_OPTIMIZATION)
+  string(APPEND dev_depends ", libceres-dev (>= 1.14)")
+endif()
+set(CPACK_COMPONENT_DEV_DESCRIPTION "hmcdyn's vision and optimization: libraries and headers")
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libhmcdyn-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "${dev_depends}")
+
+set(CPACK_COMPONENT_TOOLS_DESCRIPTION "RGB-D SLAM, its evaluation and rendered sequences")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME hmcdyn-tools)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
+
+include(CPack)

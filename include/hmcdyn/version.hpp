@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The library's version; the build reads it from here.
+#pragma once
+
+/// Breaking changes; while it is 0, so does the minor version.
+#define HMCDYN_VERSION_MAJOR 0
+/// New features.
+#define HMCDYN_VERSION_MINOR 1
+/// Mended errors.
+#define HMCDYN_VERSION_PATCH 0
+/// "major.minor.patch".
+#define HMCDYN_VERSION_STRING "0.1.0"

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/mapping/local_mapper.hpp"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "slam/mapping/local_bundle.hpp"
+#include "tracking/room.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+/// Six key frames that see one room; the poses of all but the first are a little wrong.
+Map disturbedMap() {
+  const Room room(21, 200);
+  Map map(kCamera, {});
+  std::mt19937 random(5);
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::Isometry3d truth = movedBy(0.02 * k, 0.0);
+    Frame frame = room.see(static_cast<std::size_t>(k), truth);
+    frame.camera_from_world = truth;
+    if (k > 0) {
+      // All points are seen in all of them, in one order.
+      frame.map_point = map.keyFrames().front().frame.map_point;
+      frame.camera_from_world.translation().x() += 0.004 * (random() % 3 == 0 ? -1.0 : 1.0);
+    }
+    map.insertKeyFrame(frame);
+  }
+  for (std::size_t i = 0; i < map.points().size(); ++i) {
+    map.count(static_cast<int>(i), true, {});  // trusted
+  }
+  return map;
+}
+
+double worstPose(const Map& map) {
+  double worst = 0.0;
+  for (int k = 0; k < static_cast<int>(map.keyFrames().size()); ++k) {
+    worst = std::max(worst, distanceBetween(map.poseOf(k), movedBy(0.02 * k, 0.0)));
+  }
+  return worst;
+}
+
+TEST(LocalBundle, HoldsTheFirstKeyFrameAndTakesTrustedPointsOnly) {
+  Map map = disturbedMap();
+  for (int k = 0; k < 2; ++k) {
+    map.count(0, true, {PointLabel::kDynamic, 0.0f, true});
+  }
+  const LocalBundle bundle = makeLocalBundle(map);
+  ASSERT_EQ(bundle.key_frames.size(), 6U);
+  for (std::size_t k = 0; k < bundle.key_frames.size(); ++k) {
+    EXPECT_EQ(bundle.problem.poses[k].fixed, bundle.key_frames[k] == 0);
+  }
+  EXPECT_EQ(bundle.points.size(), map.points().size() - 1);
+  EXPECT_EQ(std::count(bundle.points.begin(), bundle.points.end(), 0), 0);
+}
+
+TEST(LocalBundle, FarKeyFramesAreFixed) {
+  LocalBundleOptions options;
+  options.free_key_frames = 2;
+  options.fixed_key_frames = 3;
+  const LocalBundle bundle = makeLocalBundle(disturbedMap(), options);
+  ASSERT_EQ(bundle.key_frames.size(), 5U);
+  EXPECT_EQ(bundle.key_frames.front(), 5) << "the latest is free";
+  std::size_t fixed = 0;
+  for (const BundlePose& pose : bundle.problem.poses) {
+    fixed += pose.fixed ? 1 : 0;
+  }
+  EXPECT_GE(fixed, 3U);
+}
+
+TEST(LocalBundle, OneKeyFrameGivesNothingToDo) {
+  Map map(kCamera, {});
+  map.insertKeyFrame(Room(3).see(0, movedBy(0.0, 0.0)));
+  EXPECT_TRUE(makeLocalBundle(map).points.empty());
+}
+
+TEST(LocalMapper, PutsADisturbedMapRight) {
+  Map map = disturbedMap();
+  const double before = worstPose(map);
+  LocalMapper mapper({});
+  mapper.adjust(map);
+  EXPECT_TRUE(mapper.busy());
+  EXPECT_FALSE(mapper.poll().has_value()) << "not before its time";
+  const std::optional<MapCorrection> correction = mapper.poll();
+  ASSERT_TRUE(correction.has_value());
+  map.apply(*correction);
+  EXPECT_GT(before, 0.003);
+  EXPECT_LT(worstPose(map), 0.1 * before);
+  EXPECT_EQ(mapper.adjustments(), 1U);
+}
+
+TEST(LocalMapper, GivesTheSameResultEveryTime) {
+  Map one = disturbedMap();
+  Map other = disturbedMap();
+  for (Map* map : {&one, &other}) {
+    LocalMapper mapper({});
+    mapper.adjust(*map);
+    map->apply(*mapper.finish());
+  }
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_EQ(one.poseOf(k).matrix(), other.poseOf(k).matrix());
+  }
+}
+
+TEST(LocalMapper, SwitchedOffItDoesNothing) {
+  LocalMapperOptions options;
+  options.enabled = false;
+  LocalMapper mapper(options);
+  mapper.adjust(disturbedMap());
+  EXPECT_FALSE(mapper.busy());
+  EXPECT_FALSE(mapper.finish().has_value());
+}
+
+TEST(LocalMapper, EndsWithWorkOutstanding) {
+  LocalMapper mapper({});
+  mapper.adjust(disturbedMap());
+  SUCCEED();  // its destructor joins the thread
+}
+
+}  // namespace
+}  // namespace hmcdyn::slam

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/source/realtime_pacer.hpp"
+
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace hmcdyn::slam {
+namespace {
+
+/// Time as a test sets it; sleeping is over at once.
+struct FakeTime {
+  double now = 50.0;
+  std::vector<double> sleeps;  ///< Where each sleep ended.
+};
+
+class FakeClock final : public SteadyClock {
+ public:
+  explicit FakeClock(FakeTime& time) : time_(time) {}
+  double now() const override { return time_.now; }
+  void sleepUntil(double time) override {
+    if (time > time_.now) {
+      time_.now = time;
+      time_.sleeps.push_back(time);
+    }
+  }
+
+ private:
+  FakeTime& time_;
+};
+
+/// A recording of empty images with these time stamps.
+class FakeRecording final : public RecordedSource {
+ public:
+  explicit FakeRecording(std::vector<double> stamps) : stamps_(std::move(stamps)) {}
+
+  std::optional<RgbdFrame> next() override {
+    if (position_ == stamps_.size()) {
+      return std::nullopt;
+    }
+    ++counts_.taken_up;
+    RgbdFrame frame;
+    frame.index = position_;
+    frame.timestamp = stamps_[position_++];
+    return frame;
+  }
+  std::optional<std::size_t> expectedFrames() const override { return stamps_.size(); }
+  std::string name() const override { return "recording"; }
+  SourceCounts counts() const override { return counts_; }
+  std::optional<double> nextTimestamp() const override { return at(position_); }
+  std::optional<double> timestampAfterNext() const override { return at(position_ + 1); }
+  void skip() override {
+    ++position_;
+    ++counts_.taken_up;
+    ++counts_.dropped;
+  }
+
+ private:
+  std::optional<double> at(std::size_t i) const {
+    return i < stamps_.size() ? std::optional<double>(stamps_[i]) : std::nullopt;
+  }
+
+  std::vector<double> stamps_;
+  std::size_t position_ = 0;
+  SourceCounts counts_;
+};
+
+RealtimePacer pace(std::vector<double> stamps, FakeTime& time, double speed = 1.0) {
+  return {std::make_unique<FakeRecording>(std::move(stamps)), std::make_unique<FakeClock>(time),
+          speed};
+}
+
+TEST(RealtimePacer, WaitsForEachTimeStamp) {
+  FakeTime time;
+  RealtimePacer pacer = pace({1000.0, 1000.25, 1000.75}, time);
+  EXPECT_EQ(pacer.next()->index, 0u);
+  EXPECT_EQ(pacer.next()->index, 1u);
+  EXPECT_EQ(pacer.next()->index, 2u);
+  EXPECT_FALSE(pacer.next().has_value());
+  EXPECT_EQ(time.sleeps, (std::vector<double>{50.25, 50.75}));
+  EXPECT_EQ(pacer.counts().dropped, 0u);
+}
+
+TEST(RealtimePacer, DoesNotWaitForAFrameThatIsDueNorDropItWhileTheNextIsNot) {
+  FakeTime time;
+  RealtimePacer pacer = pace({0.0, 0.25, 0.5}, time);
+  pacer.next();
+  time.now = 50.4375;  // busy: frame 1 is due since 50.25, frame 2 is not
+  EXPECT_EQ(pacer.next()->index, 1u);
+  EXPECT_EQ(time.now, 50.4375);
+  EXPECT_EQ(pacer.counts().dropped, 0u);
+}
+
+TEST(RealtimePacer, DropsWhatTheNextFrameHasOvertaken) {
+  FakeTime time;
+  RealtimePacer pacer = pace({0.0, 0.25, 0.5, 0.75, 1.0}, time);
+  pacer.next();
+  time.now = 50.75;  // frames 1, 2 and 3 are due: 3 is the newest
+  EXPECT_EQ(pacer.next()->index, 3u);
+  EXPECT_EQ(pacer.counts().dropped, 2u);
+  EXPECT_EQ(pacer.counts().taken_up, 4u);
+  EXPECT_EQ(pacer.next()->index, 4u);
+  EXPECT_EQ(time.sleeps, (std::vector<double>{51.0}));
+}
+
+TEST(RealtimePacer, AlwaysDeliversTheLastFrame) {
+  FakeTime time;
+  RealtimePacer pacer = pace({0.0, 0.25, 0.5}, time);
+  pacer.next();
+  time.now = 99.0;
+  EXPECT_EQ(pacer.next()->index, 2u);
+  EXPECT_FALSE(pacer.next().has_value());
+  EXPECT_EQ(pacer.counts().dropped, 1u);
+}
+
+TEST(RealtimePacer, CountsTimeFromTheFirstFrameTakenUp) {
+  FakeTime time;
+  RealtimePacer pacer = pace({0.0, 0.25}, time);
+  time.now = 80.0;  // models were loaded meanwhile
+  pacer.next();
+  EXPECT_EQ(pacer.next()->index, 1u);
+  EXPECT_EQ(time.sleeps, (std::vector<double>{80.25}));
+}
+
+TEST(RealtimePacer, GoesFasterWhereAsked) {
+  FakeTime time;
+  RealtimePacer pacer = pace({0.0, 0.5}, time, 2.0);
+  pacer.next();
+  pacer.next();
+  EXPECT_EQ(time.sleeps, (std::vector<double>{50.25}));
+}
+
+TEST(RealtimePacer, TimeStampsThatGoBackAreDueAtOnce) {
+  FakeTime time;
+  RealtimePacer pacer = pace({10.0, 9.0, 10.5}, time);
+  pacer.next();
+  EXPECT_EQ(pacer.next()->index, 1u);
+  EXPECT_TRUE(time.sleeps.empty());
+  EXPECT_EQ(pacer.next()->index, 2u);
+  EXPECT_EQ(time.sleeps, (std::vector<double>{50.5}));
+}
+
+TEST(RealtimePacer, OfAnEmptyRecordingIsAtItsEnd) {
+  FakeTime time;
+  RealtimePacer pacer = pace({}, time);
+  EXPECT_FALSE(pacer.next().has_value());
+  EXPECT_EQ(pacer.expectedFrames(), 0u);
+  EXPECT_EQ(pacer.name(), "recording in real time");
+}
+
+TEST(RealtimePacer, RefusesWhatCannotBe) {
+  FakeTime time;
+  for (const double speed : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(pace({0.0}, time, speed), std::invalid_argument);
+  }
+  EXPECT_THROW(RealtimePacer(nullptr, std::make_unique<FakeClock>(time)), std::invalid_argument);
+  EXPECT_THROW(RealtimePacer(std::make_unique<FakeRecording>(std::vector<double>{}), nullptr),
+               std::invalid_argument);
+}
+
+TEST(WallClock, NeverGoesBackAndReachesWhatItSleepsFor) {
+  const std::unique_ptr<SteadyClock> clock = makeWallClock();
+  const double before = clock->now();
+  EXPECT_GE(before, 0.0);
+  clock->sleepUntil(before - 1.0);  // past: at once
+  const double target = clock->now() + 0.001;
+  clock->sleepUntil(target);
+  EXPECT_GE(clock->now(), target - 1e-9);  // the clock counts nanoseconds
+}
+
+}  // namespace
+}  // namespace hmcdyn::slam
