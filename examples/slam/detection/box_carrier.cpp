@@ -4,252 +4,366 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
-#include <opencv2/video/tracking.hpp>
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "slam/detection/box_selection.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
-double area(const DetectionBox& box) {
+constexpr float kHalf = 0.5f;  ///< Flow is followed on images of half the size.
+
+void require(bool good, const char* name, double value, const char* expected) {
+  if (!good) {
+    throw std::invalid_argument(
+        fmt::format("BoxCarrierOptions::{} is {}; expected {}", name, value, expected));
+  }
+}
+
+void checkOptions(const BoxCarrierOptions& o) {
+  require(o.max_bridge >= 0.0 && std::isfinite(o.max_bridge), "max_bridge", o.max_bridge,
+          "0 s or more");
+  require(o.max_carry >= 0.0, "max_carry", o.max_carry, "0 s or more");
+  require(o.history >= 0.0, "history", o.history, "0 s or more");
+  require(o.min_detections >= 1, "min_detections", o.min_detections, "1 or more");
+  require(o.grid >= 3 && o.grid <= 100, "grid", o.grid, "3..100");
+  require(o.min_points >= 2, "min_points", static_cast<double>(o.min_points), "2 or more");
+  require(o.depth_band > 0.0f, "depth_band", o.depth_band, "more than 0 m");
+  require(o.depth_gap > 0.0f, "depth_gap", o.depth_gap, "more than 0 m");
+  require(o.max_scatter > 0.0f, "max_scatter", o.max_scatter, "more than 0 px");
+}
+
+float areaOf(const DetectionBox& box) {
   return std::max(0.0f, box.x_max - box.x_min) * std::max(0.0f, box.y_max - box.y_min);
 }
 
-double intersection(const DetectionBox& a, const DetectionBox& b) {
-  const double width = std::min(a.x_max, b.x_max) - std::max(a.x_min, b.x_min);
-  const double height = std::min(a.y_max, b.y_max) - std::max(a.y_min, b.y_min);
-  return width > 0.0 && height > 0.0 ? width * height : 0.0;
+float intersectionOf(const DetectionBox& a, const DetectionBox& b) {
+  const float width = std::min(a.x_max, b.x_max) - std::max(a.x_min, b.x_min);
+  const float height = std::min(a.y_max, b.y_max) - std::max(a.y_min, b.y_min);
+  return width > 0.0f && height > 0.0f ? width * height : 0.0f;
 }
 
-float median(std::vector<float> values) {
+bool areDoubles(const DetectionBox& a, const DetectionBox& b, const BoxCarrierOptions& options) {
+  const float smaller = std::min(areaOf(a), areaOf(b));
+  const float larger = std::max(areaOf(a), areaOf(b));
+  return a.class_id == b.class_id && smaller > 0.0f &&
+         intersectionOf(a, b) > options.duplicate_overlap * smaller &&
+         smaller > options.duplicate_size * larger;
+}
+
+/// Whether a missed box is one that was detected after all, drawn differently: most of it lies in
+/// the detected one. (So does somebody who is hidden behind it, of whom there is little to see.)
+bool isPartOf(const DetectionBox& missed, const DetectionBox& detected,
+              const BoxCarrierOptions& options) {
+  return missed.class_id == detected.class_id &&
+         (areDoubles(missed, detected, options) ||
+          intersectionOf(missed, detected) > options.max_covered * areaOf(missed));
+}
+
+/// The values are taken by copy: they are reordered. Not for an empty one.
+float medianOf(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-/// A grid of points over the inner part of a box; where depths are known, only those of its nearest
-/// layer: the rest of a box is background.
-std::vector<cv::Point2f> pointsOn(const DetectionBox& box, const cv::Mat& depth,
-                                  const cv::Size& image, const BoxCarrierOptions& options) {
-  std::vector<cv::Point2f> points;
-  std::vector<float> depths;
-  constexpr float kInset = 0.12f;  // of the box's side: its border is background
-  for (int row = 0; row < options.grid; ++row) {
-    for (int column = 0; column < options.grid; ++column) {
-      const auto place = [&](float low, float high, int k) {
-        const float share = kInset + (1.0f - 2.0f * kInset) * static_cast<float>(k) /
-                                         static_cast<float>(options.grid - 1);
-        return low + share * (high - low);
-      };
-      const cv::Point2f p(place(box.x_min, box.x_max, column), place(box.y_min, box.y_max, row));
-      if (p.x < 0.0f || p.y < 0.0f || p.x > static_cast<float>(image.width - 1) ||
-          p.y > static_cast<float>(image.height - 1)) {
-        continue;
-      }
-      points.push_back(p);
-      depths.push_back(depth.empty() ? 0.0f : depth.at<float>(cvRound(p.y), cvRound(p.x)));
+/// Depth (m) of the nearest layer that holds enough of the values; NaN without one. A person
+/// stands before the background that the box holds as well.
+float nearestLayer(std::vector<float> depth, const BoxCarrierOptions& options) {
+  std::sort(depth.begin(), depth.end());
+  const float least = options.min_layer_share * static_cast<float>(depth.size());
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i <= depth.size(); ++i) {
+    if (i < depth.size() && depth[i] - depth[i - 1] <= options.depth_gap) {
+      continue;
     }
-  }
-  std::vector<float> known;
-  std::copy_if(depths.begin(), depths.end(), std::back_inserter(known),
-               [](float z) { return hasDepth(z); });
-  if (known.size() < options.min_points) {
-    return points;
-  }
-  const auto near = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 5);
-  std::nth_element(known.begin(), near, known.end());
-  const float limit = *near + options.layer_depth;
-  std::vector<cv::Point2f> on_thing;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (hasDepth(depths[k]) && depths[k] <= limit) {
-      on_thing.push_back(points[k]);
+    if (static_cast<float>(i - begin) >= least) {
+      return depth[begin + (i - begin) / 2];
     }
+    begin = i;
   }
-  return on_thing;
+  return kNaN;
 }
 
-struct Pairs {
-  std::vector<cv::Point2f> from, to;
-};
-
-/// Shift by the median displacement, size by the median ratio of distances from the median point.
-DetectionBox moved(const DetectionBox& box, const Pairs& pairs) {
-  std::vector<float> u, v, du, dv;
-  for (std::size_t k = 0; k < pairs.from.size(); ++k) {
-    u.push_back(pairs.from[k].x);
-    v.push_back(pairs.from[k].y);
-    du.push_back(pairs.to[k].x - pairs.from[k].x);
-    dv.push_back(pairs.to[k].y - pairs.from[k].y);
-  }
-  const cv::Point2f centre(median(u), median(v));
-  const cv::Point2f shift(median(du), median(dv));
-  std::vector<float> ratios;
-  constexpr double kFarEnough = 8.0;  // px, for a ratio that means something
-  for (std::size_t k = 0; k < pairs.from.size(); ++k) {
-    const double before = cv::norm(pairs.from[k] - centre);
-    if (before >= kFarEnough) {
-      ratios.push_back(static_cast<float>(cv::norm(pairs.to[k] - centre - shift) / before));
+/// A regular grid of pixels in the part of the box that is in the image, with their depths.
+KeyPoints gridIn(const DetectionBox& box, cv::Size image, const cv::Mat& depth, int side) {
+  KeyPoints points;
+  points.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      const auto share = [side](int i) {
+        return (static_cast<float>(i) + 0.5f) / static_cast<float>(side);
+      };
+      const float u = box.x_min + share(column) * (box.x_max - box.x_min);
+      const float v = box.y_min + share(row) * (box.y_max - box.y_min);
+      if (!(u >= 0.0f && v >= 0.0f && u <= static_cast<float>(image.width - 1) &&
+            v <= static_cast<float>(image.height - 1))) {
+        continue;
+      }
+      const float z =
+          depth.empty() ? 0.0f : depth.at<float>(static_cast<int>(v), static_cast<int>(u));
+      points.push_back(u, v, z);
     }
   }
-  constexpr float kMostChange = 0.1f;  // of the size, from one frame to the next
-  const float scale =
-      ratios.size() < 4 ? 1.0f : std::clamp(median(ratios), 1.0f - kMostChange, 1.0f + kMostChange);
+  return points;
+}
+
+/// The grid's points that lie on the thing: in its depth layer; without depth, in the middle third
+/// of the box's width, where a standing person covers most.
+KeyPoints pointsOnThing(const KeyPoints& grid, const DetectionBox& box, float thing_depth,
+                        const BoxCarrierOptions& options) {
+  KeyPoints points;
+  const float middle = 0.5f * (box.x_min + box.x_max);
+  const float reach = (box.x_max - box.x_min) / 6.0f;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const bool on_thing = std::isfinite(thing_depth)
+                              ? std::abs(grid.depth[i] - thing_depth) <= options.depth_band
+                              : std::abs(grid.u[i] - middle) <= reach;
+    if (on_thing) {
+      points.push_back(grid.u[i] * kHalf, grid.v[i] * kHalf, grid.depth[i]);
+    }
+  }
+  return points;
+}
+
+/// How a box moves: scaled about its middle, then shifted.
+struct BoxMotion {
+  float du = 0.0f;
+  float dv = 0.0f;
+  float scale = 1.0f;
+};
+
+/// Medians of the points' shifts and of the ratios of their distances; nothing where the points do
+/// not move as one.
+std::optional<BoxMotion> medianMotion(const KeyPoints& from, const FlowMatches& to,
+                                      const BoxCarrierOptions& options) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (std::isfinite(to.u[i])) {
+      found.push_back(i);
+    }
+  }
+  const float least = options.min_followed * static_cast<float>(from.size());
+  if (found.size() < options.min_points || static_cast<float>(found.size()) < least) {
+    return std::nullopt;
+  }
+  std::vector<float> du;
+  std::vector<float> dv;
+  std::vector<float> ratio;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const std::size_t i = found[k];
+    du.push_back((to.u[i] - from.u[i]) / kHalf);
+    dv.push_back((to.v[i] - from.v[i]) / kHalf);
+    for (std::size_t m = 0; m < k; ++m) {
+      const std::size_t j = found[m];
+      const float before = std::hypot(from.u[i] - from.u[j], from.v[i] - from.v[j]);
+      ratio.push_back(std::hypot(to.u[i] - to.u[j], to.v[i] - to.v[j]) / before);
+    }
+  }
+  BoxMotion motion{medianOf(du), medianOf(dv), medianOf(ratio)};
+  std::vector<float> deviation;
+  for (std::size_t k = 0; k < du.size(); ++k) {
+    deviation.push_back(std::hypot(du[k] - motion.du, dv[k] - motion.dv));
+  }
+  if (medianOf(deviation) > options.max_scatter) {
+    return std::nullopt;
+  }
+  motion.scale = std::clamp(motion.scale, 0.9f, 1.1f);  // a person's size changes slowly
+  return motion;
+}
+
+DetectionBox moved(const DetectionBox& box, const BoxMotion& motion) {
   DetectionBox result = box;
-  result.x_min = centre.x + shift.x + scale * (box.x_min - centre.x);
-  result.x_max = centre.x + shift.x + scale * (box.x_max - centre.x);
-  result.y_min = centre.y + shift.y + scale * (box.y_min - centre.y);
-  result.y_max = centre.y + shift.y + scale * (box.y_max - centre.y);
+  const float u = 0.5f * (box.x_min + box.x_max) + motion.du;
+  const float v = 0.5f * (box.y_min + box.y_max) + motion.dv;
+  const float half_width = 0.5f * motion.scale * (box.x_max - box.x_min);
+  const float half_height = 0.5f * motion.scale * (box.y_max - box.y_min);
+  result.x_min = u - half_width;
+  result.x_max = u + half_width;
+  result.y_min = v - half_height;
+  result.y_max = v + half_height;
   return result;
+}
+
+float visibleShare(const DetectionBox& box, cv::Size size) {
+  DetectionBox image;
+  image.x_max = static_cast<float>(size.width - 1);
+  image.y_max = static_cast<float>(size.height - 1);
+  const float area = areaOf(box);
+  return area > 0.0f ? intersectionOf(box, image) / area : 0.0f;
 }
 
 }  // namespace
 
-double overlap(const DetectionBox& a, const DetectionBox& b) {
-  const double both = intersection(a, b);
-  const double either = area(a) + area(b) - both;
-  return either > 0.0 ? both / either : 0.0;
+float intersectionOverUnion(const DetectionBox& a, const DetectionBox& b) {
+  const float intersection = intersectionOf(a, b);
+  return intersection > 0.0f ? intersection / (areaOf(a) + areaOf(b) - intersection) : 0.0f;
 }
 
-BoxCarrier::BoxCarrier(const BoxCarrierOptions& options) : options_(options) {
-  const auto require = [](bool good, const char* name, double value, const char* expected) {
-    if (!good) {
-      throw std::invalid_argument(std::string("BoxCarrierOptions::") + name + " is " +
-                                  std::to_string(value) + "; expected " + expected);
-    }
+std::vector<DetectionBox> mergeDoubles(const std::vector<DetectionBox>& boxes,
+                                       const BoxCarrierOptions& options) {
+  const auto isStronger = [](const DetectionBox& a, const DetectionBox& b) {
+    return a.score != b.score ? a.score > b.score : areaOf(a) > areaOf(b);
   };
-  require(options.max_age >= 0.0, "max_age", options.max_age, "a time >= 0 (s)");
-  require(options.history >= 0.0, "history", options.history, "a time >= 0 (s)");
-  require(options.min_overlap > 0.0 && options.min_overlap <= 1.0, "min_overlap",
-          options.min_overlap, "a share in (0, 1]");
-  require(options.double_overlap > 0.0, "double_overlap", options.double_overlap, "a share > 0");
-  require(options.grid >= 3, "grid", options.grid, "at least 3 points a side");
-}
-
-std::vector<DetectionBox> BoxCarrier::withoutDoubles(const std::vector<DetectionBox>& boxes) {
   std::vector<DetectionBox> kept;
-  for (const DetectionBox& box : boxes) {  // strongest first, as detectors give them
-    const bool is_double = std::any_of(kept.begin(), kept.end(), [&](const DetectionBox& other) {
-      const double smaller = std::min(area(box), area(other));
-      const double larger = std::max(area(box), area(other));
-      return box.class_id == other.class_id && smaller > 0.0 &&
-             intersection(box, other) >= options_.double_overlap * smaller &&
-             smaller >= options_.double_area * larger;
-    });
-    if (is_double) {
-      ++merged_;
-    } else {
-      kept.push_back(box);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    bool stays = true;
+    for (std::size_t j = 0; j < boxes.size() && stays; ++j) {
+      const bool equal = !isStronger(boxes[i], boxes[j]) && !isStronger(boxes[j], boxes[i]);
+      const bool yields = isStronger(boxes[j], boxes[i]) || (equal && j < i);
+      stays = i == j || !yields || !areDoubles(boxes[i], boxes[j], options);
+    }
+    if (stays) {
+      kept.push_back(boxes[i]);
     }
   }
   return kept;
 }
 
-std::vector<BoxCarrier::Track> BoxCarrier::carry(const std::vector<Track>& tracks,
-                                                 const Image& from, const Image& to) const {
-  Pairs all;
-  std::vector<std::size_t> ends;
-  for (const Track& track : tracks) {
-    const std::vector<cv::Point2f> points =
-        pointsOn(track.box, from.depth, from.gray.size(), options_);
-    all.from.insert(all.from.end(), points.begin(), points.end());
-    ends.push_back(all.from.size());
+BoxCarrier::BoxCarrier(const BoxCarrierOptions& options) : options_(options) {
+  checkOptions(options_);
+}
+
+void BoxCarrier::remember(const RgbdFrame& frame) {
+  if (!history_.empty() &&
+      (history_.back().size != frame.gray.size() || frame.timestamp <= history_.back().timestamp)) {
+    history_.clear();
+    tracks_.clear();
   }
-  if (all.from.empty()) {
-    return {};
+  cv::Mat half;
+  cv::resize(frame.gray, half, cv::Size(), kHalf, kHalf, cv::INTER_AREA);
+  history_.push_back({frame.index, frame.timestamp, frame.gray.size(),
+                      buildFlowPyramid(half, options_.flow), frame.depth});
+  while (history_.size() > 2 && frame.timestamp - history_.front().timestamp > options_.history) {
+    history_.pop_front();
   }
-  std::vector<std::uint8_t> found;
-  std::vector<float> difference;
-  constexpr int kWindow = 15;   // px
-  constexpr int kMaxLevel = 3;  // people move fast
-  cv::calcOpticalFlowPyrLK(
-      from.gray, to.gray, all.from, all.to, found, difference, cv::Size(kWindow, kWindow),
-      kMaxLevel, cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 10, 0.03));
-  std::vector<Track> carried;
-  std::size_t k = 0;
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    Pairs pairs;
-    for (; k < ends[t]; ++k) {
-      if (found[k] != 0 && difference[k] <= options_.max_difference) {
-        pairs.from.push_back(all.from[k]);
-        pairs.to.push_back(all.to[k]);
+}
+
+bool BoxCarrier::carry(Track& track, const Moment& from, const Moment& to) const {
+  const KeyPoints grid = gridIn(track.box, from.size, from.depth, options_.grid);
+  std::vector<float> depth;
+  std::copy_if(grid.depth.begin(), grid.depth.end(), std::back_inserter(depth), hasDepth);
+  if (!std::isfinite(track.depth) && depth.size() >= options_.min_points) {
+    track.depth = nearestLayer(depth, options_);
+  }
+  const bool use_depth = std::isfinite(track.depth) && depth.size() >= options_.min_points;
+  const KeyPoints points = pointsOnThing(grid, track.box, use_depth ? track.depth : kNaN, options_);
+  if (points.size() < options_.min_points) {
+    return false;
+  }
+  const FlowMatches matches =
+      trackIntoEarlierFrame(from.pyramid, to.pyramid, points.view(), options_.flow);
+  const std::optional<BoxMotion> motion = medianMotion(points, matches, options_);
+  if (!motion) {
+    return false;
+  }
+  if (use_depth) {
+    track.depth = medianOf(points.depth);
+  }
+  track.box = moved(track.box, *motion);
+  track.fresh = false;
+  return visibleShare(track.box, to.size) >= options_.min_visible;
+}
+
+void BoxCarrier::carryAll(std::vector<Track>& tracks, const Moment& from, const Moment& to) const {
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
+                              [&](Track& track) { return !carry(track, from, to); }),
+               tracks.end());
+}
+
+std::vector<BoxCarrier::Track> BoxCarrier::tracksAt(std::size_t moment,
+                                                    const std::vector<DetectionBox>& boxes) const {
+  std::vector<Track> tracks;
+  for (const DetectionBox& box : mergeDoubles(boxes, options_)) {
+    Track track;
+    track.box = box;
+    track.detected_at = history_[moment].timestamp;
+    tracks.push_back(track);
+  }
+  for (std::size_t k = moment; k + 1 < history_.size(); ++k) {
+    carryAll(tracks, history_[k], history_[k + 1]);
+  }
+  return tracks;
+}
+
+void BoxCarrier::associate(std::vector<Track> detected) {
+  struct Pair {
+    float overlap;
+    std::size_t detected;
+    std::size_t known;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < detected.size(); ++i) {
+    for (std::size_t j = 0; j < tracks_.size(); ++j) {
+      const float overlap = intersectionOverUnion(detected[i].box, tracks_[j].box);
+      if (overlap >= options_.association_iou &&
+          detected[i].box.class_id == tracks_[j].box.class_id) {
+        pairs.push_back({overlap, i, j});
       }
     }
-    if (pairs.from.size() < options_.min_points) {
-      continue;
-    }
-    Track track = tracks[t];
-    track.box = moved(track.box, pairs);
-    const bool inside = track.box.x_max > 0.0f && track.box.y_max > 0.0f &&
-                        track.box.x_min < static_cast<float>(to.gray.cols) &&
-                        track.box.y_min < static_cast<float>(to.gray.rows);
-    if (inside && to.timestamp - track.seen <= options_.max_age) {
-      carried.push_back(track);
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.overlap > b.overlap; });
+  std::vector<bool> taken(detected.size(), false);
+  std::vector<bool> found(tracks_.size(), false);
+  for (const Pair& pair : pairs) {
+    if (!taken[pair.detected] && !found[pair.known]) {
+      taken[pair.detected] = true;
+      found[pair.known] = true;
+      detected[pair.detected].detections = tracks_[pair.known].detections + 1;
     }
   }
-  return carried;
+  const std::size_t newly = detected.size();
+  for (std::size_t j = 0; j < tracks_.size(); ++j) {
+    const bool is_double = std::any_of(
+        detected.begin(), detected.begin() + static_cast<std::ptrdiff_t>(newly),
+        [&](const Track& other) { return isPartOf(tracks_[j].box, other.box, options_); });
+    if (!found[j] && !is_double && tracks_[j].detections >= options_.min_detections) {
+      tracks_[j].missed = true;
+      detected.push_back(tracks_[j]);
+    }
+  }
+  tracks_ = std::move(detected);
 }
 
-std::vector<BoxCarrier::Track> BoxCarrier::associate(std::vector<Track> tracks,
-                                                     const TimedDetection& detected,
-                                                     const Image* before, const Image& at) {
-  std::vector<Track> now;
-  for (const DetectionBox& box : withoutDoubles(detected.boxes)) {
-    now.push_back({box, detected.timestamp});
-    const auto same = std::max_element(
-        tracks.begin(), tracks.end(),
-        [&](const Track& a, const Track& b) { return overlap(a.box, box) < overlap(b.box, box); });
-    if (same != tracks.end() && same->box.class_id == box.class_id &&
-        overlap(same->box, box) >= options_.min_overlap) {
-      tracks.erase(same);
-    }
+bool BoxCarrier::hasEnded(const Track& track, const Moment& now) const {
+  const double age = now.timestamp - track.detected_at;
+  // Half a millisecond: time stamps are rounded to microseconds.
+  return age > (track.missed ? options_.max_bridge : options_.max_carry) + 0.0005 ||
+         (track.missed && options_.max_bridge == 0.0);
+}
+
+std::vector<DetectionBox> BoxCarrier::update(const RgbdFrame& frame,
+                                             const std::optional<FrameDetection>& detection) {
+  remember(frame);
+  const Moment& now = history_.back();
+  if (history_.size() > 1) {
+    carryAll(tracks_, history_[history_.size() - 2], now);
   }
-  if (options_.max_age <= 0.0 || before == nullptr || tracks.empty()) {
-    return now;
-  }
-  // What was missed is carried on, unless it is part of what was found.
-  for (const Track& track : carry(tracks, *before, at)) {
-    const bool covered = std::any_of(now.begin(), now.end(), [&](const Track& other) {
-      return intersection(track.box, other.box) >= options_.double_overlap * area(track.box);
+  if (detection) {
+    const auto moment = std::find_if(history_.begin(), history_.end(), [&](const Moment& past) {
+      return past.index == detection->frame;
     });
-    if (!covered) {
-      now.push_back(track);
+    if (moment != history_.end()) {
+      associate(tracksAt(static_cast<std::size_t>(moment - history_.begin()), detection->boxes));
     }
   }
-  return now;
-}
-
-std::size_t BoxCarrier::imageAt(double timestamp) const {
-  const auto found = std::find_if(images_.begin(), images_.end(),
-                                  [&](const Image& image) { return image.timestamp == timestamp; });
-  return static_cast<std::size_t>(found - images_.begin());
-}
-
-std::vector<DetectionBox> BoxCarrier::update(double timestamp, const cv::Mat& gray,
-                                             const cv::Mat& depth,
-                                             const std::optional<TimedDetection>& detected) {
-  while (!images_.empty() && timestamp - images_.front().timestamp > options_.history) {
-    images_.pop_front();
-    tracks_.pop_front();
-  }
-  images_.push_back({timestamp, gray, depth});
-  tracks_.emplace_back();
-  std::size_t k = images_.size() - 1;
-  if (detected && imageAt(detected->timestamp) < images_.size()) {
-    k = imageAt(detected->timestamp);
-    tracks_[k] = associate(k > 0 ? tracks_[k - 1] : std::vector<Track>{}, *detected,
-                           k > 0 ? &images_[k - 1] : nullptr, images_[k]);
-    ++k;
-  }
-  for (; k < images_.size(); ++k) {  // from the detection's frame to the present
-    tracks_[k] = k == 0 || options_.max_age <= 0.0
-                     ? std::vector<Track>{}
-                     : carry(tracks_[k - 1], images_[k - 1], images_[k]);
-  }
+  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
+                               [&](const Track& track) { return hasEnded(track, now); }),
+                tracks_.end());
+  bridged_ = 0;
   std::vector<DetectionBox> boxes;
-  for (const Track& track : tracks_.back()) {
-    boxes.push_back(track.box);
-    carried_ += track.seen < timestamp ? 1 : 0;
+  for (const Track& track : tracks_) {
+    bridged_ += track.missed ? 1 : 0;
+    if (track.fresh) {
+      boxes.push_back(track.box);
+    } else {
+      const std::vector<DetectionBox> clipped = clipToImage({track.box}, now.size);
+      boxes.insert(boxes.end(), clipped.begin(), clipped.end());
+    }
   }
   return boxes;
 }

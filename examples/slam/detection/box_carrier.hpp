@@ -8,79 +8,104 @@
 
 #include <opencv2/core.hpp>
 
+#include <hmcdyn/optical_flow.hpp>
 #include <hmcdyn/types.hpp>
+
+#include "slam/dataset/frame.hpp"
 
 namespace hmcdyn::slam {
 
 struct BoxCarrierOptions {
-  double max_age = 0.5;  ///< A box is carried on for so long without a detection (s); 0 = never.
-  double min_overlap = 0.3;  ///< Intersection over union from which a detection is that box, 0..1.
-  /// Two detections of one class are one thing when the smaller lies in the larger by this share
-  /// ...
-  double double_overlap = 0.85;
-  /// ... and has at least this share of its area: a child before its mother is smaller.
-  double double_area = 0.4;
-
-  int grid = 9;                  ///< Points a side that are followed in a box.
-  std::size_t min_points = 8;    ///< With fewer left, the box is given up.
-  float max_difference = 15.0f;  ///< A point whose window differs by more is lost (gray levels).
-  float layer_depth = 0.4f;      ///< Points up to so far behind the box's near ones count (m).
-  double history = 1.0;          ///< Images are kept for late detections for so long (s).
+  /// A box that the detector missed is bridged until it was not detected for so long (s); 0 = a
+  /// missed box ends at once.
+  double max_bridge = 0.5;
+  /// Only boxes detected so many times are bridged: a false alarm is not made to last. At least 1.
+  int min_detections = 2;
+  /// Without a newer detection, boxes are carried on for so long at most (s).
+  double max_carry = 2.0;
+  double history = 1.0;        ///< Age of the oldest frame that a late detection may refer to (s).
+  int grid = 7;                ///< Points followed along each side of a box; at least 3.
+  std::size_t min_points = 6;  ///< Fewer followed points of the thing, and the box ends.
+  float min_followed = 0.4f;   ///< The same as a share of the thing's points, 0..1.
+  float max_scatter = 5.0f;    ///< Median deviation of the points' motion from the box's (px).
+  float depth_band = 0.5f;     ///< The thing's points lie within its depth +- this (m).
+  float depth_gap = 0.25f;     ///< Depths farther apart belong to different layers (m).
+  float min_layer_share = 0.2f;  ///< A layer with fewer of the box's points is not the thing.
+  float association_iou = 0.3f;  ///< Least overlap of a carried box with the detected one.
+  /// Of two boxes of one class, the weaker goes where the intersection over the smaller area is
+  /// above duplicate_overlap and the areas' ratio is above duplicate_size; 1 = both stay.
+  float duplicate_overlap = 0.8f;
+  float duplicate_size = 0.5f;
+  /// A missed box of which more than this share lies in a detected one of its class is not bridged.
+  float max_covered = 0.5f;
+  float min_visible = 0.3f;  ///< A box of which less is in the image has left it.
+  OpticalFlowOptions flow;   ///< On images of half the size.
 };
 
-/// A detection with the frame that it was made on.
-struct TimedDetection {
-  double timestamp = 0.0;  ///< Of the frame (s).
+/// What a detector said about a frame, perhaps an earlier one.
+struct FrameDetection {
+  std::size_t frame = 0;  ///< RgbdFrame::index.
   std::vector<DetectionBox> boxes;
 };
 
-/// Carries boxes from frame to frame by the optical flow of the nearest points in them, so that a
-/// missed detection leaves no gap and a late one is brought to the present. Missed detections are
-/// what costs published systems most on walking_rpy (Hu et al., CFP-SLAM, 2022).
-///
-/// One instance serves one stream of frames in order. The same frames and detections give the same
-/// boxes.
+/// Carries detected boxes to later frames by the flow of points in them: the median-flow tracker
+/// (Kalal, Mikolajczyk, Matas, ICPR 2010) on those points of a grid that lie in the depth layer of
+/// the thing, since a box holds background, too. A detection of an earlier frame is carried to the
+/// present through the frames between; one that the detector missed is bridged for a while. Used by
+/// one thread; the same calls give the same boxes.
 class BoxCarrier {
  public:
-  /// @throws std::invalid_argument on options out of range.
+  /// @throws std::invalid_argument for an option out of its range.
   explicit BoxCarrier(const BoxCarrierOptions& options = {});
 
-  /// The boxes of the next frame.
-  /// @param gray CV_8UC1, not changed later. @param depth CV_32FC1 (m), 0 = none; may be empty.
-  /// @param detected what a detector found in this frame or an earlier one that is still
-  /// remembered; nothing = no answer. An empty list is an answer: nothing was seen.
-  std::vector<DetectionBox> update(double timestamp, const cv::Mat& gray, const cv::Mat& depth,
-                                   const std::optional<TimedDetection>& detected);
+  /// The boxes in this frame, clipped to it: those detected in it first, as they were detected and
+  /// in their order, then those carried on.
+  /// @param frame gray and depth (m, 0 = none; may be empty), time stamps that grow. A frame of
+  /// another size than the one before, or whose stamp does not grow, forgets all boxes.
+  /// @param detection the newest answer of the detector, of this frame or an earlier one; without
+  /// a value it said nothing. One older than the history is left out.
+  std::vector<DetectionBox> update(const RgbdFrame& frame,
+                                   const std::optional<FrameDetection>& detection);
 
-  std::size_t carried() const noexcept { return carried_; }  ///< Boxes without own detection.
-  std::size_t merged() const noexcept { return merged_; }    ///< Doubles that were dropped.
+  /// Boxes of the last frame that are carried on though the newest detection missed them.
+  std::size_t bridged() const noexcept { return bridged_; }
 
  private:
-  struct Image {
+  struct Moment {
+    std::size_t index = 0;
     double timestamp = 0.0;
-    cv::Mat gray;
+    cv::Size size;
+    FlowPyramid pyramid;
     cv::Mat depth;
   };
   struct Track {
-    DetectionBox box;
-    double seen = 0.0;  ///< Time stamp of the last detection (s).
+    DetectionBox box;          ///< Not clipped.
+    double detected_at = 0.0;  ///< Time stamp of the last frame it was detected in (s).
+    int detections = 1;
+    float depth = kNaN;   ///< Of the thing (m).
+    bool missed = false;  ///< The newest detection does not have it.
+    bool fresh = true;    ///< Detected in the present frame.
   };
 
-  std::vector<DetectionBox> withoutDoubles(const std::vector<DetectionBox>& boxes);
-  std::vector<Track> carry(const std::vector<Track>& tracks, const Image& from,
-                           const Image& to) const;
-  std::vector<Track> associate(std::vector<Track> tracks, const TimedDetection& detected,
-                               const Image* before, const Image& at);
-  std::size_t imageAt(double timestamp) const;
+  void remember(const RgbdFrame& frame);
+  bool carry(Track& track, const Moment& from, const Moment& to) const;
+  void carryAll(std::vector<Track>& tracks, const Moment& from, const Moment& to) const;
+  std::vector<Track> tracksAt(std::size_t moment, const std::vector<DetectionBox>& boxes) const;
+  void associate(std::vector<Track> detected);
+  bool hasEnded(const Track& track, const Moment& now) const;
 
   BoxCarrierOptions options_;
-  std::deque<Image> images_;
-  std::deque<std::vector<Track>> tracks_;  ///< At each of images_.
-  std::size_t carried_ = 0;
-  std::size_t merged_ = 0;
+  std::deque<Moment> history_;  ///< Oldest first; the last one is the present.
+  std::vector<Track> tracks_;
+  std::size_t bridged_ = 0;
 };
 
-/// Intersection over union, 0..1; 0 for an empty or inverted box.
-double overlap(const DetectionBox& a, const DetectionBox& b);
+/// Intersection over union of two boxes, 0..1; 0 where one has no area.
+float intersectionOverUnion(const DetectionBox& a, const DetectionBox& b);
+
+/// Leaves out the weaker one of each two boxes that show one thing (BoxCarrierOptions); of equal
+/// scores the larger stays. Keeps the order.
+std::vector<DetectionBox> mergeDoubles(const std::vector<DetectionBox>& boxes,
+                                       const BoxCarrierOptions& options);
 
 }  // namespace hmcdyn::slam

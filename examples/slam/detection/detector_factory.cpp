@@ -16,13 +16,18 @@
 namespace hmcdyn::slam {
 namespace {
 
+/// Looks at no image: there is no detector, or regions come from depth and flow (MotionRegions).
 class NoDetector final : public ObjectDetector {
  public:
+  explicit NoDetector(const char* name) : name_(name) {}
   std::vector<DetectionBox> detect(const cv::Mat& bgr, double /*timestamp*/) override {
     checkColorImage(bgr);
     return {};
   }
-  std::string name() const override { return "none"; }
+  std::string name() const override { return name_; }
+
+ private:
+  const char* name_;
 };
 
 struct DetectorType {
@@ -30,14 +35,18 @@ struct DetectorType {
   std::unique_ptr<ObjectDetector> (*make)(const DetectorOptions&);
 };
 
-constexpr std::array<DetectorType, 5> kTypes{{
+constexpr std::array<DetectorType, 6> kTypes{{
     {"darknet", makeDarknetDetector},
     {"yolo", makeOnnxDetector},
     {"file", makeFileDetector},
     {"hog", makeHogDetector},
+    {"motion",
+     [](const DetectorOptions&) -> std::unique_ptr<ObjectDetector> {
+       return std::make_unique<NoDetector>("motion");
+     }},
     {"none",
      [](const DetectorOptions&) -> std::unique_ptr<ObjectDetector> {
-       return std::make_unique<NoDetector>();
+       return std::make_unique<NoDetector>("none");
      }},
 }};
 

@@ -63,6 +63,11 @@ BundleObservation observe(const Frame& frame, std::size_t key_point, int pose, i
 
 }  // namespace
 
+bool judgesObservations(const BundleSolution& solution) {
+  return solution.rounds > 0 && solution.termination != BundleTermination::kNumericalFailure &&
+         solution.termination != BundleTermination::kNothingToDo;
+}
+
 LocalBundle makeLocalBundle(const Map& map, const LocalBundleOptions& options) {
   LocalBundle bundle;
   bundle.problem.camera = map.camera();
@@ -114,9 +119,12 @@ MapCorrection toCorrection(const LocalBundle& bundle, const BundleSolution& solu
   for (std::size_t k = 0; k < bundle.points.size(); ++k) {
     correction.points.emplace_back(bundle.points[k], solution.points[k]);
   }
+  if (!judgesObservations(solution)) {
+    return correction;
+  }
   for (std::size_t k = 0; k < bundle.problem.observations.size(); ++k) {
     const BundleObservation& observation = bundle.problem.observations[k];
-    if (solution.inlier[k] == 0) {
+    if (solution.inlier[k] == 0 && observation.weight > 0.0f) {
       correction.outliers.emplace_back(
           bundle.points[static_cast<std::size_t>(observation.point)],
           bundle.key_frames[static_cast<std::size_t>(observation.pose)]);

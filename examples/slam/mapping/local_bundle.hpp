@@ -27,7 +27,11 @@ struct LocalBundle {
 /// without a pose where there are not two key frames yet.
 LocalBundle makeLocalBundle(const Map& map, const LocalBundleOptions& options = {});
 
-/// What the solution means for the map.
+/// Whether the solution tells inliers from outliers: one that failed, or was stopped before its
+/// first round, calls nothing an inlier, and would empty the map.
+bool judgesObservations(const BundleSolution& solution);
+
+/// What the solution means for the map. Observations of weight 0 took no part and stay.
 MapCorrection toCorrection(const LocalBundle& bundle, const BundleSolution& solution);
 
 }  // namespace hmcdyn::slam

@@ -103,7 +103,9 @@ std::optional<MapCorrection> LoopClosing::takeUp(Answer answer, const Map& map) 
   note(report, map);
   if (report.constraint) {
     loops_.push_back(*report.constraint);
-    if (!closing_) {
+    if (closing_) {
+      due_ = true;
+    } else {
       submitClosure(map);
     }
   }
@@ -111,6 +113,10 @@ std::optional<MapCorrection> LoopClosing::takeUp(Answer answer, const Map& map) 
 }
 
 std::optional<MapCorrection> LoopClosing::poll(const Map& map) {
+  if (due_ && !closing_) {  // the correction before it has been applied by now
+    due_ = false;
+    submitClosure(map);
+  }
   if (worker_.pending() == 0) {
     return std::nullopt;
   }
@@ -125,6 +131,10 @@ std::optional<MapCorrection> LoopClosing::poll(const Map& map) {
 }
 
 std::optional<MapCorrection> LoopClosing::finish(const Map& map) {
+  if (due_ && !closing_) {
+    due_ = false;
+    submitClosure(map);
+  }
   std::optional<MapCorrection> latest;
   while (worker_.pending() > 0 && !latest) {
     latest = takeUp(worker_.take(), map);

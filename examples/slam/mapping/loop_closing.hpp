@@ -95,6 +95,7 @@ class LoopClosing {
   std::size_t frames_waited_ = 0;
   std::size_t left_out_ = 0;
   bool closing_ = false;  ///< A correction is on its way.
+  bool due_ = false;      ///< A loop was found meanwhile; its correction comes next.
   Worker<Job, Answer> worker_;
 };
 

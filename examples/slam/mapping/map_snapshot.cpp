@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "slam/mapping/local_bundle.hpp"
+
 namespace hmcdyn::slam {
 namespace {
 
@@ -110,8 +112,9 @@ MapCorrection toCorrection(const LoopSnapshot& snapshot, const LoopClosure& clos
       correction.fused.emplace_back(point.id, point.fused_into);
     }
   }
-  for (std::size_t k = 0; k < closure.inlier.size(); ++k) {
-    if (closure.inlier[k] == 0) {
+  const bool judged = judgesObservations(closure.bundle);
+  for (std::size_t k = 0; judged && k < closure.inlier.size(); ++k) {
+    if (closure.inlier[k] == 0 && snapshot.sightings[k].weight > 0.0f) {
       correction.outliers.emplace_back(snapshot.sightings[k].point,
                                        static_cast<int>(snapshot.sightings[k].key_frame));
     }

@@ -21,7 +21,7 @@ struct StaticBeliefOptions {
   double contradiction = 0.8;  ///< Log-odds that a dynamic sighting takes.
   double limit = 4.0;     ///< Largest log-odds, so that a thing that starts to move is found out.
   double removal = -0.7;  ///< Points below are removed (log-odds).
-  double trust = 0.9;     ///< Points above may shape the map (log-odds): seen static twice.
+  double trust = 1.2;     ///< Points from here on may shape the map (log-odds): seen static twice.
 };
 
 /// The log-odds that a point stands still: the binary Bayes filter of occupancy grids (Moravec and

@@ -122,9 +122,9 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
                  "Overlap (intersection over union) above which the weaker box goes, 0..1")
       ->capture_default_str()
       ->group("Detection");
-  app.add_option("--bridge", options.carrier.max_age,
-                 "A box that the detector misses is carried on by its points for so long (s); 0 = "
-                 "off (real time needs it: boxes come late)")
+  app.add_option("--bridge", options.bridge,
+                 "A box that the detector missed is carried on by optical flow for so long (s); "
+                 "0 = never")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group("Detection");

@@ -7,13 +7,38 @@
 #include "slam/detection/detector_factory.hpp"
 
 namespace hmcdyn::slam {
+namespace {
+
+std::optional<BoxCarrier> makeCarrier(const SlamOptions& options) {
+  BoxCarrierOptions carrier;
+  carrier.max_bridge = options.bridge;
+  if (options.detector.type == "file") {
+    carrier.duplicate_overlap = 1.0f;  // boxes from a file are taken as they are
+  }
+  BoxCarrier checked(carrier);
+  const bool carries = options.mode == RunMode::kRealtime || options.bridge > 0.0;
+  const bool detects = options.detector.type != "none" && options.detector.type != "motion";
+  return detects && carries ? std::optional(std::move(checked)) : std::nullopt;
+}
+
+std::optional<MotionRegions> makeRegions(const SlamOptions& options) {
+  if (options.detector.type != "motion") {
+    return std::nullopt;
+  }
+  MotionRegionOptions regions;
+  regions.seed = options.seed;
+  return MotionRegions(regions);
+}
+
+}  // namespace
 
 DetectionFeed::DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report)
     : realtime_(options.mode == RunMode::kRealtime),
       boxes_are_raw_(options.detector.type == "file"),
       rectifier_(std::move(rectifier)),
-      carrier_(options.carrier),
-      thread_(makeDetector(options.detector), std::move(report)) {}
+      thread_(makeDetector(options.detector), std::move(report)),
+      regions_(makeRegions(options)),
+      carrier_(makeCarrier(options)) {}
 
 std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> boxes) const {
   if (boxes_are_raw_) {
@@ -25,6 +50,9 @@ std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> box
 }
 
 void DetectionFeed::ask(const PreparedFrame& frame) {
+  if (regions_) {
+    return;
+  }
   DetectionRequest request{frame.raw.index, frame.raw.timestamp,
                            boxes_are_raw_ ? frame.raw.bgr : frame.image.bgr};
   if (realtime_) {
@@ -36,22 +64,35 @@ void DetectionFeed::ask(const PreparedFrame& frame) {
 
 FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
   FrameBoxes result;
+  if (regions_) {
+    const StageTimer timer;
+    result.boxes = regions_->update(frame.image);
+    result.detected = true;
+    result.carry_time = timer.elapsed("boxes");
+    return result;
+  }
   std::optional<Detection> detection;
   if (realtime_) {
     detection = thread_.tryTakeNewest();
   } else {
     detection = thread_.take();
   }
-  std::optional<TimedDetection> found;
+  std::optional<FrameDetection> said;
   if (detection) {
+    result.detected = !detection->failed && detection->frame == frame.raw.index;
     result.detect_wall_ms = detection->wall_ms;
     result.detect_cpu_ms = detection->cpu_ms;
     if (!detection->failed) {
-      found = TimedDetection{detection->timestamp, rectified(std::move(detection->boxes))};
+      said = FrameDetection{detection->frame, rectified(std::move(detection->boxes))};
     }
   }
   const StageTimer timer;
-  result.boxes = carrier_.update(frame.image.timestamp, frame.image.gray, frame.image.depth, found);
+  if (carrier_) {
+    result.boxes = carrier_->update(frame.image, said);
+    result.bridged = carrier_->bridged();
+  } else if (said) {
+    result.boxes = std::move(said->boxes);
+  }
   result.carry_time = timer.elapsed("boxes");
   return result;
 }

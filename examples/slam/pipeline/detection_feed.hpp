@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +9,7 @@
 #include "slam/dataset/frame.hpp"
 #include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detection_thread.hpp"
+#include "slam/detection/motion_regions.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
 
@@ -24,13 +25,16 @@ struct PreparedFrame {
 /// A frame's boxes, and where they come from.
 struct FrameBoxes {
   std::vector<DetectionBox> boxes;  ///< In the undistorted image.
+  bool detected = false;            ///< By the detector in this very frame; else carried on.
+  std::size_t bridged = 0;          ///< Boxes that the newest detection missed.
   double detect_wall_ms = 0.0;      ///< Of the detector's thread; 0 without an answer.
   double detect_cpu_ms = 0.0;
-  StageTime carry_time;  ///< Of carrying boxes on, in the calling thread.
+  StageTime carry_time;  ///< What carrying boxes on, or finding regions, took.
 };
 
 /// The boxes of each frame. Offline every frame waits for its own detection; in real time none
-/// waits, and boxes of an earlier frame are carried on.
+/// waits, and boxes of an earlier frame are carried to the present. Boxes that the detector missed
+/// are bridged in both (SlamOptions::bridge).
 class DetectionFeed {
  public:
   /// @throws std::invalid_argument or std::runtime_error where the detector cannot be used.
@@ -43,7 +47,6 @@ class DetectionFeed {
   FrameBoxes boxesOf(const PreparedFrame& frame);
 
   const DetectionCounts& counts() const noexcept { return thread_.counts(); }
-  const BoxCarrier& carrier() const noexcept { return carrier_; }
   const std::string& detectorName() const noexcept { return thread_.detectorName(); }
 
  private:
@@ -52,8 +55,9 @@ class DetectionFeed {
   bool realtime_;
   bool boxes_are_raw_;  ///< Boxes from a file refer to the image as the camera saw it.
   Rectifier rectifier_;
-  BoxCarrier carrier_;
   DetectionThread thread_;
+  std::optional<MotionRegions> regions_;  ///< Instead of a detector.
+  std::optional<BoxCarrier> carrier_;     ///< Nothing where no box is ever to be carried.
 };
 
 }  // namespace hmcdyn::slam

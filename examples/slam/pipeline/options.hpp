@@ -7,7 +7,6 @@
 #include <string>
 
 #include "slam/dataset/tum_dataset.hpp"
-#include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detector_options.hpp"
 #include "slam/features/orb_extractor.hpp"
 #include "slam/filtering/motion_filter.hpp"
@@ -37,7 +36,8 @@ struct SlamOptions {
   DatasetOptions association;
   std::string camera = "tum3";  ///< Preset or calibration file.
   DetectorOptions detector;
-  BoxCarrierOptions carrier;
+  /// Boxes that the detector missed are carried on by optical flow for so long (s); 0 = never.
+  double bridge = 0.5;
   OrbOptions features;
   /// Up to so many times as many key points where boxes cover much of the image; 1 = never.
   double max_feature_factor = 2.5;

@@ -92,8 +92,7 @@ class FrameFeed {
   std::optional<PreparedFrame> ahead_;
 };
 
-FrameOutcome trackFrame(const PreparedFrame& frame, DetectionFeed& detections, Pipeline& pipeline) {
-  FrameBoxes boxes = detections.boxesOf(frame);
+FrameOutcome trackFrame(const PreparedFrame& frame, FrameBoxes boxes, Pipeline& pipeline) {
   StageTimes before;
   before.add(frame.rectify_time);
   before.add({"detect", boxes.detect_wall_ms, boxes.detect_cpu_ms});
@@ -128,7 +127,9 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop) {
       if (!frame) {
         break;
       }
-      const FrameOutcome outcome = trackFrame(*frame, detections, pipeline);
+      FrameBoxes boxes = detections.boxesOf(*frame);
+      counts.boxes_bridged += boxes.bridged;
+      const FrameOutcome outcome = trackFrame(*frame, std::move(boxes), pipeline);
       writer.write(outcome, pipeline.map(), pipeline.loops());
       if (dense && outcome.tracking.new_key_frame) {
         dense->add(pipeline.map().keyFrames().size() - 1, outcome);
@@ -142,8 +143,6 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop) {
   counts.stopped = stop && stop();
   counts.source = source->counts();
   counts.detections = detections.counts();
-  counts.boxes_carried = detections.carrier().carried();
-  counts.boxes_merged = detections.carrier().merged();
   if (!source->failure().empty()) {
     warn(source->failure());
   }

@@ -142,7 +142,7 @@ nlohmann::json toJson(const SlamOptions& options, const std::string& detector_na
           {"classes", options.detector.classes},
           {"score_threshold", options.detector.score_threshold},
           {"nms_threshold", options.detector.nms_threshold},
-          {"bridge_s", options.carrier.max_age},
+          {"bridge_s", options.bridge},
           {"mode", options.mode == RunMode::kOffline ? "offline" : "realtime"},
           {"filter", hmcdyn::toString(stage.rule)},
           {"soft_weights", options.filter.soft_weights},
@@ -194,8 +194,7 @@ nlohmann::json toJson(const RunCounts& counts) {
             {"detected", counts.detections.detected},
             {"replaced", counts.detections.replaced},
             {"failed", counts.detections.failed}}},
-          {"boxes_carried", counts.boxes_carried},
-          {"boxes_merged", counts.boxes_merged},
+          {"boxes_bridged", counts.boxes_bridged},
           {"dense_map_points", counts.map_points},
           {"stopped_by_signal", counts.stopped}};
 }

@@ -34,7 +34,8 @@ cv::Mat noise(int rows, int columns) {
 }
 
 TEST(DetectorFactory, AnUnknownTypeListsTheTypes) {
-  EXPECT_TRUE(mentions(refusal(ofType("yolov9")), {"'yolov9'", "darknet, yolo, file, hog, none"}));
+  EXPECT_TRUE(
+      mentions(refusal(ofType("yolov9")), {"'yolov9'", "darknet, yolo, file, hog, motion, none"}));
 }
 
 TEST(DetectorFactory, AFileDetectorNeedsItsFile) {

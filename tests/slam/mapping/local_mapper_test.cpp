@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/mapping/local_mapper.hpp"
 
+#include <algorithm>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -21,13 +23,13 @@ Map disturbedMap() {
     Frame frame = room.see(static_cast<std::size_t>(k), truth);
     frame.camera_from_world = truth;
     if (k > 0) {
-      // All points are seen in all of them, in one order.
-      frame.map_point = map.keyFrames().front().frame.map_point;
+      frame = tied(std::move(frame), map);
       frame.camera_from_world.translation().x() += 0.004 * (random() % 3 == 0 ? -1.0 : 1.0);
     }
     map.insertKeyFrame(frame);
   }
   for (std::size_t i = 0; i < map.points().size(); ++i) {
+    map.count(static_cast<int>(i), true, {});
     map.count(static_cast<int>(i), true, {});  // trusted
   }
   return map;
@@ -51,7 +53,10 @@ TEST(LocalBundle, HoldsTheFirstKeyFrameAndTakesTrustedPointsOnly) {
   for (std::size_t k = 0; k < bundle.key_frames.size(); ++k) {
     EXPECT_EQ(bundle.problem.poses[k].fixed, bundle.key_frames[k] == 0);
   }
-  EXPECT_EQ(bundle.points.size(), map.points().size() - 1);
+  const auto seen_twice =
+      std::count_if(map.points().begin() + 1, map.points().end(),
+                    [](const MapPoint& point) { return point.observations.size() >= 2; });
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(bundle.points.size()), seen_twice);
   EXPECT_EQ(std::count(bundle.points.begin(), bundle.points.end(), 0), 0);
 }
 
@@ -67,6 +72,21 @@ TEST(LocalBundle, FarKeyFramesAreFixed) {
     fixed += pose.fixed ? 1 : 0;
   }
   EXPECT_GE(fixed, 3U);
+}
+
+TEST(LocalBundle, AFailedAdjustmentCallsNothingAnOutlier) {
+  const LocalBundle bundle = makeLocalBundle(disturbedMap());
+  BundleSolution failed;
+  for (const BundlePose& pose : bundle.problem.poses) {
+    failed.poses.push_back(pose.camera_from_world);
+  }
+  failed.points = bundle.problem.points;
+  failed.inlier.assign(bundle.problem.observations.size(), 0);
+  failed.rounds = 1;
+  failed.termination = BundleTermination::kNumericalFailure;
+  EXPECT_TRUE(toCorrection(bundle, failed).outliers.empty());
+  failed.termination = BundleTermination::kConverged;
+  EXPECT_EQ(toCorrection(bundle, failed).outliers.size(), failed.inlier.size());
 }
 
 TEST(LocalBundle, OneKeyFrameGivesNothingToDo) {

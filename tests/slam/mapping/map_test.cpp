@@ -12,16 +12,6 @@
 namespace hmcdyn::slam {
 namespace {
 
-/// The frame with its key points tied to the map points that the frame before it gave, by number:
-/// the room's points come in one order as long as all of them are seen.
-Frame tied(Frame frame, const Map& map) {
-  const std::vector<int>& first = map.keyFrames().front().frame.map_point;
-  for (std::size_t i = 0; i < frame.map_point.size() && i < first.size(); ++i) {
-    frame.map_point[i] = first[i];
-  }
-  return frame;
-}
-
 class MapTest : public testing::Test {
  protected:
   MapTest() : room_(11, 200), map_(kCamera, {}) {}

@@ -46,6 +46,8 @@ TEST(StaticBelief, ANewPointIsNotTrustedAtOnce) {
   StaticBelief belief{options.prior};
   EXPECT_LT(belief.log_odds, options.trust);
   belief.update(kStatic, options);
+  EXPECT_LT(belief.log_odds, options.trust) << "once is a pause";
+  belief.update(kStatic, options);
   EXPECT_GE(belief.log_odds, options.trust);
 }
 

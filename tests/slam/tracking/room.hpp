@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -20,7 +21,8 @@ namespace hmcdyn::slam {
 
 inline const PinholeCamera kCamera{300.0, 300.0, 159.5, 119.5};
 
-/// Points of a room, each with a random descriptor of its own, and frames that see them exactly.
+/// Points of a room, each with a random descriptor of its own, and frames that see them exactly; a
+/// key point's class_id is its point's number.
 class Room {
  public:
   explicit Room(std::uint32_t seed, int points = 300) {
@@ -50,6 +52,7 @@ class Room {
       features.key_points.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
                                        31.0f);
       features.key_points.back().octave = 0;
+      features.key_points.back().class_id = static_cast<int>(i);
       cv::Mat row(1, 32, CV_8U);
       std::memcpy(row.data, descriptors_[i].data(), 32);
       features.descriptors.push_back(row);
@@ -62,6 +65,21 @@ class Room {
   std::vector<Eigen::Vector3d> points_;
   std::vector<Descriptor> descriptors_;
 };
+
+/// Gives the frame's key points the map points that the first key frame has for the same points of
+/// the room.
+inline Frame tied(Frame frame, const Map& map) {
+  const Frame& first = map.keyFrames().front().frame;
+  std::map<int, int> map_point_of;
+  for (std::size_t i = 0; i < first.points.size(); ++i) {
+    map_point_of[first.features.key_points[i].class_id] = first.map_point[i];
+  }
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    const auto found = map_point_of.find(frame.features.key_points[i].class_id);
+    frame.map_point[i] = found == map_point_of.end() ? kNoMapPoint : found->second;
+  }
+  return frame;
+}
 
 inline Eigen::Isometry3d movedBy(double x, double turn) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
