@@ -47,7 +47,7 @@ struct Clip {
                 const Eigen::Vector2d& thing_step = {1.0, -3.0})
       : scene(kStep, thing_step),
         options(with),
-        points(scene.keyPoints()),
+        points(LayeredScene::keyPoints()),
         boxes{LayeredScene::boxOfThing()},
         current(buildFlowPyramid(scene.grayOf(0), options.flow)),
         depth(scene.depthOf(0)) {

@@ -50,7 +50,7 @@ DynamicFeatureFilterOptions fixedOptions() {
 struct Clip {
   Clip(const LayeredScene& of, const std::vector<int>& frames_ago,
        const DynamicFeatureFilterOptions& with = fixedOptions())
-      : options(with), points(of.keyPoints()), boxes{LayeredScene::boxOfThing()} {
+      : options(with), points(LayeredScene::keyPoints()), boxes{LayeredScene::boxOfThing()} {
     current = buildFlowPyramid(of.grayOf(0), options.flow);
     for (const int frames : frames_ago) {
       pyramids.push_back(buildFlowPyramid(of.grayOf(frames), options.flow));
@@ -250,7 +250,7 @@ TEST(DynamicFeatureFilter, WithoutAnEarlierFrameEverythingIsStatic) {
 
 TEST(DynamicFeatureFilter, IdenticalImagesAreACameraThatStandsStill) {
   const cv::Mat image = LayeredScene(kStep, {1.0, -3.0}).grayOf(0);
-  const KeyPoints points = LayeredScene(kStep, {1.0, -3.0}).keyPoints();
+  const KeyPoints points = LayeredScene::keyPoints();
   const std::vector<DetectionBox> boxes{LayeredScene::boxOfThing()};
   const DynamicFeatureFilterResult result =
       filterDynamicFeatures(image, image.clone(), points.view(), boxes, fixedOptions());

@@ -82,7 +82,7 @@ class Reproduce : public evaluate::test::TemporaryFolder {
 
   /// The calls of hmcdyn_slam since the last time.
   std::string takeCalls() const {
-    const std::string calls = read(path("calls"));
+    std::string calls = read(path("calls"));
     fs::remove(path("calls"));
     return calls;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
@@ -24,8 +25,8 @@ class LayeredScene {
 
   /// @param camera_step sideways motion of the camera between two frames (m).
   /// @param thing_step motion of the thing in the image between two frames (px).
-  LayeredScene(double camera_step, const Eigen::Vector2d& thing_step)
-      : camera_step_(camera_step), thing_step_(thing_step) {}
+  LayeredScene(double camera_step, Eigen::Vector2d thing_step)
+      : camera_step_(camera_step), thing_step_(std::move(thing_step)) {}
 
   /// What `frames` frames ago was seen.
   cv::Mat grayOf(int frames) const {
@@ -65,7 +66,7 @@ class LayeredScene {
   }
 
   /// Key points of the current frame on a grid, away from all edges; depths as seen.
-  KeyPoints keyPoints() const {
+  static KeyPoints keyPoints() {
     constexpr int kMargin = 12;
     KeyPoints points;
     for (int v = kMargin; v < kHeight - kMargin; v += 6) {
