@@ -109,7 +109,7 @@ bool distancesWanted(const DynamicFeatureFilterInput& input,
   return options.flow_background == 0 || !input.boxes.empty() ||
          (input.memory != nullptr &&
           std::any_of(input.memory->belief.begin(), input.memory->belief.end(),
-                      [](float belief) { return belief > 0.0f; }));
+                      [&](float belief) { return belief > options.belief.dynamic_belief; }));
 }
 
 /// Where nobody votes, every point in a box needs a distance of its own.
