@@ -165,9 +165,11 @@ inline const Clustering& clusterBox(Span<const float> depth, Span<const float> d
   for (std::size_t i = 0; i < depth.size(); ++i) {
     const float z = options.depth_scale * depth[i];
     const float d = options.distance_scale * distance[i];
-    // NOLINTNEXTLINE(readability-implicit-bool-conversion,clang-diagnostic-bitwise-instead-of-logical):
-    // no branch
-    const bool usable = (depth[i] > 0.0f) & (z <= kLargest) & (std::abs(d) <= kLargest);
+    const float metres = depth[i];
+    const float size = std::abs(d);
+    // Without a branch. NOLINTBEGIN(readability-implicit-bool-conversion)
+    const bool usable = (metres > 0.0f) & (z <= kLargest) & (size <= kLargest);
+    // NOLINTEND(readability-implicit-bool-conversion)
     x[i] = usable ? z : kNaN;
     y[i] = usable ? d : kNaN;
   }

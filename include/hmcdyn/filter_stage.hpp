@@ -165,9 +165,11 @@ LanedSum sumOf(std::size_t n, Value&& value, Counts&& counts) {
 /// Standard deviation of the depths that are there; 0 without any.
 inline float depthDeviation(Span<const float> depth) {
   const auto usable = [depth](std::size_t i) {
-    // NOLINTNEXTLINE(readability-implicit-bool-conversion,clang-diagnostic-bitwise-instead-of-logical):
-    // no branch
-    return (depth[i] > 0.0f) & (depth[i] <= std::numeric_limits<float>::max());
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    const float metres = depth[i];
+    // Without a branch. NOLINTBEGIN(readability-implicit-bool-conversion)
+    return (metres > 0.0f) & (metres <= kLargest);
+    // NOLINTEND(readability-implicit-bool-conversion)
   };
   const LanedSum sum = sumOf(
       depth.size(), [depth](std::size_t i) { return static_cast<double>(depth[i]); }, usable);

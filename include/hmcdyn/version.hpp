@@ -2,6 +2,7 @@
 // The library's version; the build reads it from here.
 #pragma once
 
+// NOLINTBEGIN(cppcoreguidelines-macro-usage): for the preprocessor of whoever includes this
 /// Breaking changes; while it is 0, so does the minor version.
 #define HMCDYN_VERSION_MAJOR 0
 /// New features.
@@ -10,3 +11,4 @@
 #define HMCDYN_VERSION_PATCH 0
 /// "major.minor.patch".
 #define HMCDYN_VERSION_STRING "0.1.0"
+// NOLINTEND(cppcoreguidelines-macro-usage)

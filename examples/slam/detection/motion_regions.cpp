@@ -224,9 +224,10 @@ const MotionRegions::Moment* MotionRegions::comparable(double timestamp) const {
              : nullptr;
 }
 
-void MotionRegions::remember(double timestamp, std::vector<DetectionBox> moving,
+void MotionRegions::remember(double timestamp, const std::vector<DetectionBox>& moving,
                              std::vector<DetectionBox> still) {
   std::vector<Region> regions;
+  regions.reserve(moving.size() + still.size());
   for (const DetectionBox& box : moving) {
     regions.push_back({box, timestamp});
   }
@@ -272,7 +273,7 @@ std::vector<DetectionBox> MotionRegions::update(const RgbdFrame& frame) {
     const bool moves = evidence[i].points >= options_.min_points && share >= options_.min_moving;
     (moves ? moving : still).push_back(boxOf(segments.rect[i], frame.gray.size(), share, options_));
   }
-  remember(frame.timestamp, std::move(moving), std::move(still));
+  remember(frame.timestamp, moving, std::move(still));
   history_.push_back(std::move(now));
   while (frame.timestamp - history_.front().timestamp > options_.history) {
     history_.pop_front();

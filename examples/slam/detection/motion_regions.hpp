@@ -74,7 +74,7 @@ class MotionRegions {
   };
 
   const Moment* comparable(double timestamp) const;
-  void remember(double timestamp, std::vector<DetectionBox> moving,
+  void remember(double timestamp, const std::vector<DetectionBox>& moving,
                 std::vector<DetectionBox> still);
 
   MotionRegionOptions options_;
