@@ -5,15 +5,17 @@ set -euo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--no-install] [--quick] [--no-o2] [--output FILE]
+Usage: ${0##*/} [--no-install] [--no-o2] [--repetitions N] [--filter REGEX] [--output FILE]
 
 Builds the bench preset (-O3 -march=x86-64-v3) and a plain -O2 build, runs all benchmarks with random
 interleaving, and writes tables of medians with ratios to the peers, and a plot of time against N.
 Some 15 minutes on 2 cores. Nothing else should run on the machine meanwhile.
 
   --no-install   do not install missing packages, nor the optional peers (Open3D, PCL)
-  --quick        3 repetitions instead of 9, up to 100 000 points: for trying the script
   --no-o2        without the plain -O2 build
+  --repetitions N  that medians are of (default: 9)
+  --filter REGEX   only these benchmarks, or with - in front all but these, by names such as
+                   clustering/1000/hmcdyn, e.g. '-clustering/(316228|1000000)/' for a short run
   --output FILE  the page to write (default: docs/benchmarks.md)
   --help         this text
 USAGE
@@ -26,17 +28,22 @@ usage_error() {
 }
 
 install=true
-quick=false
 plain=true
+repetitions=9
+filter=
 output=
+call="scripts/benchmark.sh $*"
 while (($# > 0)); do
   case "$1" in
     --no-install) install=false ;;
-    --quick) quick=true ;;
     --no-o2) plain=false ;;
-    --output)
-      (($# > 1)) || usage_error "--output needs a value"
-      output=$(realpath -m "$2")
+    --output | --repetitions | --filter)
+      (($# > 1)) || usage_error "$1 needs a value"
+      case "$1" in
+        --output) output=$(realpath -m "$2") ;;
+        --repetitions) repetitions=$2 ;;
+        --filter) filter=$2 ;;
+      esac
       shift
       ;;
     --help | -h) usage && exit 0 ;;
@@ -51,12 +58,7 @@ command -v python3 >/dev/null || usage_error "python3 is missing; it makes the t
 if $install; then
   scripts/install_dependencies.sh --bench
 fi
-repetitions=9
-most='' # a regular expression of benchmarks that are left out
-if $quick; then
-  repetitions=3
-  most='-clustering/(316228|1000000)/'
-fi
+[[ $repetitions =~ ^[1-9][0-9]*$ ]] || usage_error "--repetitions is '$repetitions'; expected a number above 0"
 benches=(bench_clustering bench_epipolar bench_filter_stage bench_pose_refinement)
 export OMP_NUM_THREADS=1 # Open3D and PCL would take all cores
 
@@ -77,7 +79,7 @@ run() {
     printf '== Running %s in %s ...' "$bench" "$folder"
     "$folder/bin/$bench" --benchmark_enable_random_interleaving=true \
       --benchmark_repetitions=$repetitions --benchmark_min_time=0.02 \
-      ${most:+--benchmark_filter="$most"} --benchmark_out="$folder/results/$bench.json" \
+      ${filter:+--benchmark_filter="$filter"} --benchmark_out="$folder/results/$bench.json" \
       --benchmark_out_format=json >"$folder/results/$bench.log" 2>&1 ||
       {
         tail -n 5 "$folder/results/$bench.log" >&2
@@ -97,5 +99,6 @@ if $plain; then
   run build/bench-o2
   folders+=(build/bench-o2)
 fi
-python3 scripts/benchmark_page.py --output "$output" --notes docs/benchmarks_notes.md "${folders[@]}"
+python3 scripts/benchmark_page.py --output "$output" --notes docs/benchmarks_notes.md \
+  --repetitions $repetitions --call "${call% }" "${folders[@]}"
 echo "Wrote $output"

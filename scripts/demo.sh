@@ -92,4 +92,5 @@ for filter in none hmc; do
 done
 "$bin/hmcdyn_side_by_side" "$output/none/frames" "$output/hmc/frames" 4 "$output/frames.png"
 echo
+echo "Open $output/hmc/report.html in a browser: the whole run on one page."
 echo "Look at $output/comparison.png (trajectories, error over time) and $output/frames.png (labels, filter off and on); all frames: $output/{none,hmc}/frames"
