@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -51,6 +53,13 @@ struct FilmedScene {
 
   bool isThing(std::size_t i) const { return LayeredScene::isThing(points.u[i], points.v[i]); }
 };
+
+/// -1 in place of each NaN, so that equal arrays compare equal. For values >= 0.
+inline std::vector<float> withoutNaN(std::vector<float> values) {
+  std::replace_if(
+      values.begin(), values.end(), [](float value) { return std::isnan(value); }, -1.0f);
+  return values;
+}
 
 /// The last frame's result after a film from `first` on.
 template <class Regions>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "integration/frame_filter.hpp"
 
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -18,12 +17,14 @@ namespace {
 using test::FilmedScene;
 using test::filterFilm;
 using test::invalidArgumentOf;
+using test::withoutNaN;
 using testing::HasSubstr;
 
 void expectSame(const FrameFilterResult& actual, const FrameFilterResult& expected) {
   EXPECT_EQ(actual.keep, expected.keep);
   EXPECT_EQ(actual.weight, expected.weight);
   EXPECT_EQ(actual.details.stage.label, expected.details.stage.label);
+  EXPECT_EQ(withoutNaN(actual.details.belief.belief), withoutNaN(expected.details.belief.belief));
 }
 
 TEST(FrameFilter, DropsWhatMovesAndKeepsTheWalls) {
@@ -46,6 +47,54 @@ TEST(FrameFilter, DropsWhatMovesAndKeepsTheWalls) {
   ASSERT_GT(walls, 300);
   EXPECT_LE(kept_of_thing, thing / 20);
   EXPECT_GE(kept_of_walls, walls * 19 / 20);
+}
+
+TEST(FrameFilter, IsTheLibrarysCallWithTheRightFramesAndMemory) {
+  // Given every frame's pyramid and beliefs, kept by hand
+  const FilmedScene film;
+  const DynamicFeatureFilterOptions options;
+  std::vector<FlowPyramid> pyramids;
+  std::vector<MotionBelief> beliefs;
+  std::vector<KeyPoints> points;
+  DynamicFeatureFilterWorkspace workspace;
+  FrameFilter filter;
+  for (int frame = 0; frame < FilmedScene::kFrames; ++frame) {
+    const FrameInput input = film.input(frame);
+    pyramids.push_back(buildFlowPyramid(input.gray, options.flow));
+    points.push_back(film.points);
+    for (std::size_t i = 0; i < film.points.size(); ++i) {
+      points.back().depth[i] = input.depth.at<float>(static_cast<int>(film.points.v[i]),
+                                                     static_cast<int>(film.points.u[i]));
+    }
+    // the neighbour, and the frame 0.1 s ago: that is three before
+    std::vector<EarlierFrame> earlier;
+    for (const int ago : {1, 3}) {
+      if (frame >= ago) {
+        earlier.emplace_back();
+        earlier.back().pyramid = &pyramids[static_cast<std::size_t>(frame - ago)];
+        earlier.back().age = input.timestamp - film.input(frame - ago).timestamp;
+      }
+    }
+    DynamicFeatureFilterInput by_hand;
+    by_hand.pyramid = &pyramids.back();
+    by_hand.points = points.back().view();
+    by_hand.boxes = film.boxes;
+    by_hand.earlier = earlier;
+    by_hand.depth = {input.depth.ptr<float>(), input.depth.cols, input.depth.rows,
+                     input.depth.step1()};
+    by_hand.memory = beliefs.empty() ? nullptr : &beliefs.back();
+    const DynamicFeatureFilterResult expected = filterDynamicFeatures(by_hand, options, workspace);
+    // When
+    const FrameFilterResult result = filter.filter(input, film.boxes);
+    // Then
+    EXPECT_EQ(result.details.stage.label, expected.stage.label) << "frame " << frame;
+    EXPECT_EQ(result.details.stage.weight, expected.stage.weight) << "frame " << frame;
+    EXPECT_EQ(withoutNaN(result.details.belief.belief), withoutNaN(expected.belief.belief))
+        << "frame " << frame;
+    EXPECT_EQ(withoutNaN(result.details.distance), withoutNaN(expected.distance))
+        << "frame " << frame;
+    beliefs.push_back(expected.belief);
+  }
 }
 
 TEST(FrameFilter, TheFirstFrameKeepsEverything) {
@@ -90,40 +139,39 @@ TEST(FrameFilter, AfterAResetNothingIsKnown) {
 }
 
 TEST(FrameFilter, ReadsDepthsAtTheNearestPixelWhereNoneAreGiven) {
-  // Given key points half a pixel off, on both sides of an edge, outside, and nowhere
+  // Given a key point on the wall in the box, nearest to a pixel with a depth of its own, and two
+  // that have no pixel
   FilmedScene film;
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const cv::Point2f pixel :
-       {cv::Point2f(109.49f, 100.0f), cv::Point2f(109.5f, 100.0f), cv::Point2f(-0.6f, 10.0f),
-        cv::Point2f(319.6f, 10.0f), cv::Point2f(10.0f, 1e20f), cv::Point2f(nan, 10.0f)}) {
-    film.key_points.emplace_back(pixel, 7.0f);
-    film.points.push_back(pixel.x, pixel.y, 0.0f);
-  }
-  const std::size_t n = film.points.size();
-  film.points.depth[n - 6] = 3.0f;  // the middle wall
-  film.points.depth[n - 5] = 1.5f;  // the thing
-  FrameFilter reads;
-  FrameFilter is_given;
-  for (int frame = 0; frame < FilmedScene::kFrames; ++frame) {
-    // When
-    FrameInput input = film.input(frame);
-    const FrameFilterResult result = reads.filter(input, film.boxes);
-    std::vector<float> depths = film.points.depth;
-    if (frame + 1 < FilmedScene::kFrames) {  // the thing is elsewhere
-      depths.clear();
-      for (std::size_t i = 0; i < n; ++i) {
-        const bool inside = i + 4 < n;
-        depths.push_back(
-            inside ? input.depth.at<float>(static_cast<int>(std::floor(film.points.v[i] + 0.5f)),
-                                           static_cast<int>(std::floor(film.points.u[i] + 0.5f)))
-                   : 0.0f);
+  film.key_points.emplace_back(230.5f, 100.6f, 7.0f);
+  film.key_points.emplace_back(319.6f, 10.0f, 7.0f);
+  film.key_points.emplace_back(std::numeric_limits<float>::quiet_NaN(), 1e20f, 7.0f);
+  FrameFilterOptions options;
+  options.filter.use_belief = false;
+  options.soft_weight_gate = 0.0;  // eq. 7's weights, which depend on the depth
+  const auto filmed = [&](bool given, float depth) {
+    FrameFilter filter(options);
+    FrameFilterResult result;
+    for (int frame = 0; frame < FilmedScene::kFrames; ++frame) {
+      FrameInput input = film.input(frame);
+      input.depth.at<float>(101, 231) = 2.0f;
+      std::vector<float> depths;
+      for (std::size_t i = 0; i < film.points.size(); ++i) {  // on whole pixels
+        depths.push_back(input.depth.at<float>(static_cast<int>(film.points.v[i]),
+                                               static_cast<int>(film.points.u[i])));
       }
+      depths.insert(depths.end(), {depth, 0.0f, 0.0f});
+      input.point_depth = given ? Span<const float>(depths) : Span<const float>();
+      result = filter.filter(input, film.boxes);
     }
-    input.point_depth = depths;
-    // Then
-    expectSame(result, is_given.filter(input, film.boxes));
-    EXPECT_EQ(result.keep.size(), n);
-  }
+    return result;
+  };
+  // When
+  const FrameFilterResult read = filmed(false, 0.0f);
+  // Then
+  expectSame(read, filmed(true, 2.0f));
+  const std::size_t point = film.points.size();
+  ASSERT_EQ(read.details.stage.label[point], PointLabel::kSuspect);
+  EXPECT_NE(read.weight[point], filmed(true, 3.0f).weight[point]);
 }
 
 TEST(FrameFilter, WorksWithoutADepthCamera) {

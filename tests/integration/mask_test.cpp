@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // FrameFilter with masks in place of boxes.
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace {
 using test::FilmedScene;
 using test::filterFilm;
 using test::LayeredScene;
+using test::withoutNaN;
 
 const std::vector<LabelRegion> kThing = {{7, kPersonClassId, 1.0f}};
 
@@ -85,7 +87,39 @@ TEST(MaskFilter, AMaskThatFillsTheBoxGivesTheResultOfTheBox) {
     EXPECT_EQ(result.keep, expected.keep) << "belief " << belief;
     EXPECT_EQ(result.weight, expected.weight) << "belief " << belief;
     EXPECT_EQ(result.details.stage.label, expected.details.stage.label) << "belief " << belief;
+    EXPECT_EQ(withoutNaN(result.details.belief.belief), withoutNaN(expected.details.belief.belief))
+        << "belief " << belief;
     EXPECT_GT(expected.details.stage.frame.dynamic, 50U) << "belief " << belief;
+  }
+}
+
+TEST(MaskFilter, EveryPointOfARegionIsMeasured) {
+  // Given a budget that boxes would have to keep to
+  const FilmedScene film;
+  FrameFilterOptions options;
+  options.filter.flow_in_boxes = 20;
+  FrameFilter filter(options);
+  // When
+  const FrameFilterResult result = filterFilm(filter, film, RegionMask{film.maskOfThing(), kThing});
+  // Then
+  int thing = 0;
+  int measured = 0;
+  for (std::size_t i = 0; i < film.points.size(); ++i) {
+    thing += film.isThing(i) ? 1 : 0;
+    measured += film.isThing(i) && !std::isnan(result.details.distance[i]) ? 1 : 0;
+  }
+  EXPECT_GE(measured, thing * 19 / 20);
+}
+
+TEST(MaskFilter, ThePeersRulesFormNoBeliefs) {
+  const FilmedScene film;
+  FrameFilterOptions options;
+  options.filter.stage.rule = FilterRule::kBox;
+  FrameFilter filter(options);
+  const FrameFilterResult result = filterFilm(filter, film, RegionMask{film.maskOfThing(), kThing});
+  EXPECT_EQ(result.details.belief.size(), 0U);
+  for (std::size_t i = 0; i < film.points.size(); ++i) {
+    EXPECT_EQ(result.keep[i], film.isThing(i) ? 0 : 1) << "point " << i;
   }
 }
 
