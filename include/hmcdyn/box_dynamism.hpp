@@ -102,9 +102,21 @@ inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const Detec
 
 namespace detail {
 
-/// @throws std::invalid_argument when a box holds a point beyond the first `points`.
+/// @throws std::invalid_argument when a box holds a point beyond the first `points`, or where the
+/// offsets do not delimit the indices.
 inline void checkMembership(const char* caller, const BoxMembership& membership,
                             std::size_t points) {
+  const std::vector<std::size_t>& offsets = membership.offsets;
+  const bool offsets_fit = offsets.empty() ? membership.indices.empty()
+                                           : offsets.front() == 0 &&
+                                                 std::is_sorted(offsets.begin(), offsets.end()) &&
+                                                 offsets.back() == membership.indices.size();
+  if (!offsets_fit) {
+    throw std::invalid_argument(std::string(caller) + ": membership has offsets that do not rise " +
+                                "from 0 to its number of indices, " +
+                                std::to_string(membership.indices.size()) +
+                                "; expected what assignToBoxes or assignToRegions gives");
+  }
   std::uint32_t largest = 0;
   for (const std::uint32_t index : membership.indices) {
     largest = std::max(largest, index);

@@ -319,6 +319,75 @@ inline void countLabels(const FilterStageWorkspace& workspace, FrameDecision& fr
   frame.unmatched = unmatched;
 }
 
+inline void checkFilterInput(const KeyPointsView& points, Span<const float> distance,
+                             const FilterStageOptions& options) {
+  checkKeyPoints(points);
+  if (distance.size() != points.size()) {
+    throw std::invalid_argument("filterKeyPoints: " + std::to_string(points.size()) +
+                                " key points, but " + std::to_string(distance.size()) +
+                                " distances; expected equal sizes");
+  }
+  checkOptions(options.clustering);
+  checkOptions(options.cluster_filter);
+  checkOptions(options.weights);
+  checkOptions(options.two_threshold);
+  checkOptions(options.chi_square);
+  checkOptions(options.depth_ransac);
+}
+
+/// Steps 4 to 7 with the workspace's membership.
+inline const FilterStageResult& filterMembers(const KeyPointsView& points,
+                                              Span<const float> distance,
+                                              Span<const DetectionBox> boxes,
+                                              const FilterStageOptions& options,
+                                              FilterStageWorkspace& workspace) {
+  FilterStageResult& result = workspace.result;
+  result.label.assign(points.size(), PointLabel::kStatic);
+  result.weight.assign(points.size(), 1.0f);
+  result.cluster.assign(points.size(), kNoise);
+  resetDecisions(boxes.size(), result.boxes, workspace.spare_boxes);
+  result.frame = FrameDecision{};
+  FrameDecision& frame = result.frame;
+  frame.points = points.size();
+  frame.boxes = boxes.size();
+  frame.mean_distance = meanDistance(distance, frame.measured);
+
+  workspace.in_dynamic_box.assign(points.size(), 0);
+  workspace.dynamism = testBoxes(distance, boxes, workspace.membership, options.boxes,
+                                 std::move(workspace.dynamism));  // step 4
+
+  int clusters = 0;
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    BoxDecision& decision = result.boxes[b];
+    decision.verdict = workspace.dynamism.boxes[b];
+    decision.first_cluster = clusters;
+    if (!decision.verdict.is_dynamic) {
+      continue;
+    }
+    ++frame.dynamic_boxes;
+    if (options.rule == FilterRule::kHmc) {
+      filterDynamicBox(b, points, distance, options, workspace);
+      clusters += static_cast<int>(decision.clusters.size());
+    } else {
+      for (const std::uint32_t i : workspace.membership.pointsIn(b)) {
+        workspace.in_dynamic_box[i] = 1;
+      }
+    }
+  }
+  if (options.rule != FilterRule::kHmc && options.rule != FilterRule::kNone) {
+    const std::vector<std::uint8_t>& dynamic =
+        peerFlags(points, distance, boxes, options, workspace);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (dynamic[i] != 0) {
+        result.label[i] = PointLabel::kDynamic;
+        result.weight[i] = 0.0f;
+      }
+    }
+  }
+  countLabels(workspace, frame);
+  return result;
+}
+
 }  // namespace detail
 
 /// Labels and weighs the key points of a frame whose distances are known: box test, clustering,
@@ -335,65 +404,26 @@ inline const FilterStageResult& filterKeyPoints(const KeyPointsView& points,
                                                 Span<const DetectionBox> boxes,
                                                 const FilterStageOptions& options,
                                                 FilterStageWorkspace& workspace) {
-  checkKeyPoints(points);
-  if (distance.size() != points.size()) {
-    throw std::invalid_argument("filterKeyPoints: " + std::to_string(points.size()) +
-                                " key points, but " + std::to_string(distance.size()) +
-                                " distances; expected equal sizes");
-  }
-  checkOptions(options.clustering);
-  checkOptions(options.cluster_filter);
-  checkOptions(options.weights);
-  checkOptions(options.two_threshold);
-  checkOptions(options.chi_square);
-  checkOptions(options.depth_ransac);
-
-  FilterStageResult& result = workspace.result;
-  result.label.assign(points.size(), PointLabel::kStatic);
-  result.weight.assign(points.size(), 1.0f);
-  result.cluster.assign(points.size(), kNoise);
-  detail::resetDecisions(boxes.size(), result.boxes, workspace.spare_boxes);
-  result.frame = FrameDecision{};
-  FrameDecision& frame = result.frame;
-  frame.points = points.size();
-  frame.boxes = boxes.size();
-  frame.mean_distance = detail::meanDistance(distance, frame.measured);
-
-  workspace.in_dynamic_box.assign(points.size(), 0);
+  detail::checkFilterInput(points, distance, options);
   workspace.membership = assignToBoxes(points, boxes, std::move(workspace.membership));
-  workspace.dynamism = testBoxes(distance, boxes, workspace.membership, options.boxes,
-                                 std::move(workspace.dynamism));  // step 4
+  return detail::filterMembers(points, distance, boxes, options, workspace);
+}
 
-  int clusters = 0;
-  for (std::size_t b = 0; b < boxes.size(); ++b) {
-    BoxDecision& decision = result.boxes[b];
-    decision.verdict = workspace.dynamism.boxes[b];
-    decision.first_cluster = clusters;
-    if (!decision.verdict.is_dynamic) {
-      continue;
-    }
-    ++frame.dynamic_boxes;
-    if (options.rule == FilterRule::kHmc) {
-      detail::filterDynamicBox(b, points, distance, options, workspace);
-      clusters += static_cast<int>(decision.clusters.size());
-    } else {
-      for (const std::uint32_t i : workspace.membership.pointsIn(b)) {
-        workspace.in_dynamic_box[i] = 1;
-      }
-    }
-  }
-  if (options.rule != FilterRule::kHmc && options.rule != FilterRule::kNone) {
-    const std::vector<std::uint8_t>& dynamic =
-        detail::peerFlags(points, distance, boxes, options, workspace);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (dynamic[i] != 0) {
-        result.label[i] = PointLabel::kDynamic;
-        result.weight[i] = 0.0f;
-      }
-    }
-  }
-  detail::countLabels(workspace, frame);
-  return result;
+/// The same where something else than boxes says which points belong together: a mask
+/// (regions.hpp), for one.
+/// @param boxes one a region: its class decides the threshold of the test, its borders nothing.
+/// @param membership the points of each region (assignToRegions, or your own).
+/// @throws std::invalid_argument also when membership and boxes differ in number, or the membership
+/// is not one of these points.
+inline const FilterStageResult& filterKeyPoints(const KeyPointsView& points,
+                                                Span<const float> distance,
+                                                Span<const DetectionBox> boxes,
+                                                const BoxMembership& membership,
+                                                const FilterStageOptions& options,
+                                                FilterStageWorkspace& workspace) {
+  detail::checkFilterInput(points, distance, options);
+  workspace.membership = membership;
+  return detail::filterMembers(points, distance, boxes, options, workspace);
 }
 
 /// The same without a workspace.

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "integration/frame_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <hmcdyn/pose_refinement.hpp>
+
+namespace hmcdyn::integration {
+namespace {
+
+std::string sizeText(const cv::Mat& image) {
+  return std::to_string(image.cols) + " x " + std::to_string(image.rows) + " px, " +
+         cv::typeToString(image.type());
+}
+
+/// The nearest pixel's depth; 0 outside the image and for points that are not finite.
+float depthAt(const cv::Mat& depth, const cv::Point2f& point) {
+  const float column = std::floor(point.x + 0.5f);
+  const float row = std::floor(point.y + 0.5f);
+  const bool inside = column >= 0.0f && row >= 0.0f && column < static_cast<float>(depth.cols) &&
+                      row < static_cast<float>(depth.rows);
+  return inside ? depth.at<float>(static_cast<int>(row), static_cast<int>(column)) : 0.0f;
+}
+
+KeyPoints pointsOf(const FrameInput& frame) {
+  KeyPoints points;
+  points.reserve(frame.key_points.size());
+  for (std::size_t i = 0; i < frame.key_points.size(); ++i) {
+    const cv::Point2f& pixel = frame.key_points[i].pt;
+    points.push_back(
+        pixel.x, pixel.y,
+        frame.point_depth.empty() ? depthAt(frame.depth, pixel) : frame.point_depth[i]);
+  }
+  return points;
+}
+
+DepthImageView viewOf(const cv::Mat& depth) {
+  return depth.empty() ? DepthImageView{}
+                       : DepthImageView{depth.ptr<float>(), depth.cols, depth.rows, depth.step1()};
+}
+
+/// Steps 4 to 7 and the votes, for points that belong to regions. `details` has the distances.
+DynamicFeatureFilterResult filterRegions(DynamicFeatureFilterResult details,
+                                         const DynamicFeatureFilterInput& input,
+                                         const std::vector<int>& region,
+                                         const DynamicFeatureFilterOptions& options,
+                                         DynamicFeatureFilterWorkspace& workspace) {
+  const BoxMembership membership = assignToRegions(region, input.boxes.size());
+  details.stage = filterKeyPoints(input.points, details.distance, input.boxes, membership,
+                                  options.stage, workspace.stage);
+  if (!options.use_belief || options.stage.rule != FilterRule::kHmc || input.depth.empty()) {
+    return details;
+  }
+  std::vector<std::uint8_t> in_region(region.size());
+  std::transform(region.begin(), region.end(), in_region.begin(),
+                 [](int r) { return static_cast<std::uint8_t>(r != kNoRegion ? 1 : 0); });
+  workspace.belief.surface = surfaceDepths(input.depth, input.points.u, input.points.v,
+                                           options.surface, std::move(workspace.belief.surface));
+  MotionBeliefInput votes;
+  votes.points = input.points;
+  votes.distance = details.distance;
+  votes.label = details.stage.label;
+  votes.in_box = in_region;
+  if (!details.earlier.empty()) {
+    votes.earlier_u = details.earlier.front().flow.u;
+    votes.earlier_v = details.earlier.front().flow.v;
+  }
+  const MotionBelief nothing;
+  details.belief = updateMotionBelief(votes, input.memory != nullptr ? *input.memory : nothing,
+                                      options.belief, workspace.belief);
+  details.stage =
+      applyMotionBelief(details.belief, in_region, workspace.belief.surface.is_dragged,
+                        std::move(details.stage), options.belief, options.belief_verdict);
+  return details;
+}
+
+}  // namespace
+
+FrameFilter::FrameFilter(FrameFilterOptions options) : options_(std::move(options)) {
+  for (const double baseline : options_.baselines) {
+    if (!(baseline >= 0.0 && std::isfinite(baseline))) {
+      throw std::invalid_argument("FrameFilterOptions::baselines holds " +
+                                  std::to_string(baseline) + "; expected ages >= 0 (s)");
+    }
+  }
+  std::sort(options_.baselines.begin(), options_.baselines.end());
+}
+
+void FrameFilter::checkFrame(const FrameInput& frame) const {
+  const bool later = history_.empty() || frame.timestamp > history_.back().timestamp;
+  if (!later || !std::isfinite(frame.timestamp)) {
+    throw std::invalid_argument(
+        "FrameFilter: timestamp is " + std::to_string(frame.timestamp) + " s" +
+        (history_.empty() ? std::string("; expected a finite time")
+                          : ", after " + std::to_string(history_.back().timestamp) +
+                                " s; expected a later one, or reset() before"));
+  }
+  if (!frame.depth.empty() &&
+      (frame.depth.type() != CV_32FC1 || frame.depth.size() != frame.gray.size())) {
+    throw std::invalid_argument("FrameFilter: depth is " + sizeText(frame.depth) +
+                                "; expected CV_32FC1 (m) of the image's size, " +
+                                std::to_string(frame.gray.cols) + " x " +
+                                std::to_string(frame.gray.rows) + " px");
+  }
+  if (!frame.point_depth.empty() && frame.point_depth.size() != frame.key_points.size()) {
+    throw std::invalid_argument("FrameFilter: " + std::to_string(frame.key_points.size()) +
+                                " key points, but " + std::to_string(frame.point_depth.size()) +
+                                " depths; expected equal sizes, or none");
+  }
+}
+
+FrameFilter::Prepared FrameFilter::prepare(const FrameInput& frame) const {
+  checkFrame(frame);
+  Prepared prepared;
+  prepared.current.timestamp = frame.timestamp;
+  prepared.current.pyramid = buildFlowPyramid(frame.gray, options_.filter.flow);
+  prepared.points = pointsOf(frame);
+  if (options_.filter.stage.rule == FilterRule::kNone) {
+    return prepared;
+  }
+  for (const double baseline : options_.baselines) {
+    const auto youngest = std::find_if(
+        history_.rbegin(), history_.rend(),
+        [&](const Remembered& past) { return frame.timestamp - past.timestamp >= baseline; });
+    if (youngest == history_.rend() ||
+        (!prepared.earlier.empty() && prepared.earlier.back().pyramid == &youngest->pyramid)) {
+      continue;
+    }
+    EarlierFrame earlier;
+    earlier.pyramid = &youngest->pyramid;
+    earlier.age = frame.timestamp - youngest->timestamp;
+    prepared.earlier.push_back(earlier);
+    prepared.memory = prepared.memory == nullptr ? &youngest->belief : prepared.memory;
+  }
+  return prepared;
+}
+
+DynamicFeatureFilterInput FrameFilter::inputOf(const Prepared& prepared, const cv::Mat& depth,
+                                               Span<const DetectionBox> boxes) {
+  DynamicFeatureFilterInput input;
+  input.pyramid = &prepared.current.pyramid;
+  input.points = prepared.points.view();
+  input.boxes = boxes;
+  input.earlier = prepared.earlier;
+  input.depth = viewOf(depth);
+  input.memory = prepared.memory;
+  return input;
+}
+
+FrameFilterResult FrameFilter::finish(DynamicFeatureFilterResult details, Remembered current) {
+  FrameFilterResult result;
+  const FrameDecision& decision = details.stage.frame;
+  result.soft_weights =
+      options_.soft_weights &&
+      useSoftWeights(decision.points_in_dynamic_boxes, decision.points, options_.soft_weight_gate);
+  result.weight = result.soft_weights ? details.stage.weight
+                                      : hardWeights(Span<const float>(details.stage.weight));
+  result.keep.resize(result.weight.size());
+  std::transform(result.weight.begin(), result.weight.end(), result.keep.begin(),
+                 [](float weight) { return static_cast<std::uint8_t>(weight > 0.0f ? 1 : 0); });
+  current.belief = details.belief;
+  result.details = std::move(details);
+
+  const double longest = options_.baselines.empty() ? 0.0
+                                                    : *std::max_element(options_.baselines.begin(),
+                                                                        options_.baselines.end());
+  constexpr double kSpare = 0.5;  // s: a late frame must still find one that is old enough
+  while (!history_.empty() && history_.front().timestamp < current.timestamp - longest - kSpare) {
+    history_.pop_front();
+  }
+  history_.push_back(std::move(current));
+  return result;
+}
+
+FrameFilterResult FrameFilter::filter(const FrameInput& frame, Span<const DetectionBox> boxes) {
+  Prepared prepared = prepare(frame);
+  DynamicFeatureFilterResult details =
+      filterDynamicFeatures(inputOf(prepared, frame.depth, boxes), options_.filter, workspace_);
+  return finish(std::move(details), std::move(prepared.current));
+}
+
+FrameFilterResult FrameFilter::filter(const FrameInput& frame, const RegionMask& mask) {
+  if (mask.labels.size() != frame.gray.size()) {
+    throw std::invalid_argument("FrameFilter: labels is " + sizeText(mask.labels) +
+                                "; expected the image's size, " + std::to_string(frame.gray.cols) +
+                                " x " + std::to_string(frame.gray.rows) + " px");
+  }
+  Prepared prepared = prepare(frame);
+  const std::vector<int> region =
+      regionsOfPoints(prepared.points.view(), mask.labels, mask.regions);
+  const std::vector<DetectionBox> boxes = boundingBoxes(mask.labels, mask.regions);
+  const DynamicFeatureFilterInput input = inputOf(prepared, frame.depth, boxes);
+
+  // The library's one call knows boxes only: of it, the distances; then its steps, on the regions.
+  DynamicFeatureFilterOptions distances_only = options_.filter;
+  distances_only.use_belief = false;
+  DynamicFeatureFilterResult details = filterDynamicFeatures(input, distances_only, workspace_);
+  details = filterRegions(std::move(details), input, region, options_.filter, workspace_);
+  return finish(std::move(details), std::move(prepared.current));
+}
+
+void FrameFilter::reset() noexcept { history_.clear(); }
+
+}  // namespace hmcdyn::integration
