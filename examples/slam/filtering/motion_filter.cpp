@@ -61,7 +61,8 @@ DynamicFeatureFilterResult MotionFilter::filter(const cv::Mat& gray, const cv::M
   input.boxes = boxes;
   input.earlier = earlier;
   input.depth = {depth.ptr<float>(), depth.cols, depth.rows, depth.step1()};
-  // A memory is of the frame before: it needs the flow to that one, which the baselines may leave out.
+  // A memory is of the frame before: it needs the flow to that one, which the baselines may leave
+  // out.
   const bool has_neighbour =
       !earlier.empty() && earlier.front().pyramid == &history_.back().pyramid;
   input.memory = has_neighbour ? &memory_ : nullptr;
