@@ -33,7 +33,8 @@ TEST(MaskFilter, TheWallBesideTheThingCountsFullyWhereABoxWouldDoubtIt) {
   FrameFilter by_mask(withoutBeliefs());
   FrameFilter by_box(withoutBeliefs());
   // When
-  const FrameFilterResult mask = filterFilm(by_mask, film, RegionMask{film.maskOfThing(), kThing});
+  const FrameFilterResult mask =
+      filterFilm(by_mask, film, RegionMask{FilmedScene::maskOfThing(), kThing});
   const FrameFilterResult box = filterFilm(by_box, film, film.boxes);
   // Then
   int in_box = 0;
@@ -52,7 +53,8 @@ TEST(MaskFilter, TheWallBesideTheThingCountsFullyWhereABoxWouldDoubtIt) {
 TEST(MaskFilter, DropsWhatMovesWithBeliefs) {
   const FilmedScene film;
   FrameFilter filter;
-  const FrameFilterResult result = filterFilm(filter, film, RegionMask{film.maskOfThing(), kThing});
+  const FrameFilterResult result =
+      filterFilm(filter, film, RegionMask{FilmedScene::maskOfThing(), kThing});
   int thing = 0;
   int kept_of_thing = 0;
   int walls = 0;
@@ -100,7 +102,8 @@ TEST(MaskFilter, EveryPointOfARegionIsMeasured) {
   options.filter.flow_in_boxes = 20;
   FrameFilter filter(options);
   // When
-  const FrameFilterResult result = filterFilm(filter, film, RegionMask{film.maskOfThing(), kThing});
+  const FrameFilterResult result =
+      filterFilm(filter, film, RegionMask{FilmedScene::maskOfThing(), kThing});
   // Then
   int thing = 0;
   int measured = 0;
@@ -116,7 +119,8 @@ TEST(MaskFilter, ThePeersRulesFormNoBeliefs) {
   FrameFilterOptions options;
   options.filter.stage.rule = FilterRule::kBox;
   FrameFilter filter(options);
-  const FrameFilterResult result = filterFilm(filter, film, RegionMask{film.maskOfThing(), kThing});
+  const FrameFilterResult result =
+      filterFilm(filter, film, RegionMask{FilmedScene::maskOfThing(), kThing});
   EXPECT_EQ(result.details.belief.size(), 0U);
   for (std::size_t i = 0; i < film.points.size(); ++i) {
     EXPECT_EQ(result.keep[i], film.isThing(i) ? 0 : 1) << "point " << i;
