@@ -14,3 +14,8 @@ if(HMCDYN_SANITIZE)
                       -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${HMCDYN_SANITIZE})
 endif()
+
+# What a fuzzer tests tells it which branches were taken.
+if(HMCDYN_BUILD_FUZZERS)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
