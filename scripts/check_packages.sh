@@ -53,6 +53,6 @@ chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euxc '
     --boxes /tmp/crowd/boxes.txt --filter hmc --output /tmp/run --quiet
   hmcdyn_evaluate summary --groundtruth /tmp/crowd/groundtruth.txt --estimate /tmp/run/trajectory.txt
 
-  apt-get -q -y purge hmcdyn-tools libhmcdyn-dev libhmcdyn-core-dev >/dev/null
+  apt-get -q -y purge --autoremove hmcdyn-tools libhmcdyn-dev libhmcdyn-core-dev >/dev/null
   if test -e /usr/include/hmcdyn || test -e /usr/bin/hmcdyn_slam; then echo "something stayed"; exit 1; fi'
 echo "The packages install, work and leave."
