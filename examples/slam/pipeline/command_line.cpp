@@ -105,7 +105,9 @@ void declareInput(CLI::App& app, SlamOptions& options) {
 
 void declareDetection(CLI::App& app, SlamOptions& options) {
   DetectorOptions& detector = options.detector;
-  app.add_option("--detector", detector.type, "Where boxes come from")
+  app.add_option("--detector", detector.type,
+                 "Where boxes come from: darknet, yolo (ONNX) and hog see people; file reads them "
+                 "(--boxes); motion proposes regions that move, without a model (experimental)")
       ->check(CLI::IsMember(detectorTypes()))
       ->capture_default_str()
       ->group("Detection");

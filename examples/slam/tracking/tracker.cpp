@@ -2,6 +2,8 @@
 #include "slam/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <opencv2/calib3d.hpp>
@@ -64,7 +66,7 @@ Eigen::Isometry3d Tracker::predict() const { return velocity_ * last_->camera_fr
 PoseRefinementResult Tracker::refine(const Frame& frame, const std::vector<PointMatch>& matches,
                                      const Eigen::Isometry3d& initial) const {
   const ObservationArrays arrays(frame, matches, map_);
-  return refinePose(arrays.view(), camera_, initial, options_.refinement);
+  return refinePose(arrays.view(), camera_, initial, options_.refinement, workspace_);
 }
 
 Tracker::Estimate Tracker::estimate(const Frame& frame, const KeyPointGrid& grid,
@@ -161,27 +163,22 @@ void Tracker::apply(const MapCorrection& correction) {
 }
 
 void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search) {
-  constexpr int kNotFound = -1;
-  std::vector<int> found(map_.points().size(), kNotFound);  // by key point
-  std::vector<std::uint8_t> dynamic(map_.points().size(), 0);
+  std::unordered_map<int, std::size_t> key_point_of;  // what is seen, not the whole map
   for (std::size_t i = 0; i < frame.map_point.size(); ++i) {
     if (frame.map_point[i] != kNoMapPoint) {
-      found[static_cast<std::size_t>(frame.map_point[i])] = static_cast<int>(i);
+      key_point_of.emplace(frame.map_point[i], i);
     }
   }
-  for (const int point : search.seen_dynamic) {
-    dynamic[static_cast<std::size_t>(point)] = 1;
-  }
+  const std::unordered_set<int> dynamic(search.seen_dynamic.begin(), search.seen_dynamic.end());
   for (const int point : search.visible) {
-    const auto index = static_cast<std::size_t>(point);
+    const auto found = key_point_of.find(point);
     StaticEvidence evidence;
-    evidence.agrees = found[index] != kNotFound;
-    if (dynamic[index] != 0) {
+    evidence.agrees = found != key_point_of.end();
+    if (dynamic.count(point) != 0) {
       evidence.label = PointLabel::kDynamic;
     } else if (evidence.agrees) {
-      const auto key_point = static_cast<std::size_t>(found[index]);
-      evidence.label = frame.label[key_point];
-      evidence.weight = frame.weight[key_point];
+      evidence.label = frame.label[found->second];
+      evidence.weight = frame.weight[found->second];
     }
     map_.count(point, evidence.agrees, evidence);
   }

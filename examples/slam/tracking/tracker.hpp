@@ -108,6 +108,7 @@ class Tracker {
   std::optional<Frame> last_;                                   ///< The last tracked frame.
   Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  ///< Last step, camera from camera.
   bool lost_ = false;
+  mutable PoseRefinementWorkspace workspace_;  ///< Memory only: changes no result.
 };
 
 }  // namespace hmcdyn::slam
