@@ -112,6 +112,11 @@ bool distancesWanted(const DynamicFeatureFilterInput& input,
                       [&](float belief) { return belief > options.belief.dynamic_belief; }));
 }
 
+bool formsBeliefs(const DynamicFeatureFilterInput& input,
+                  const DynamicFeatureFilterOptions& options) {
+  return options.use_belief && options.stage.rule == FilterRule::kHmc && !input.depth.empty();
+}
+
 /// Where nobody votes, every point in a box needs a distance of its own.
 internal::FlowBudget budgetOf(const DynamicFeatureFilterOptions& options, bool forms_beliefs) {
   return {options.flow_margin, forms_beliefs ? options.flow_in_boxes : 0, options.flow_background};
@@ -221,34 +226,6 @@ FilterStageResult stageOfSelection(const internal::FlowSelection& selection,
   return all;
 }
 
-/// Step 6, extended: the points vote on each other.
-DynamicFeatureFilterResult withBelief(DynamicFeatureFilterResult result,
-                                      const DynamicFeatureFilterInput& input,
-                                      const DynamicFeatureFilterOptions& options,
-                                      DynamicFeatureFilterWorkspace& workspace) {
-  workspace.belief.surface = surfaceDepths(input.depth, input.points.u, input.points.v,
-                                           options.surface, std::move(workspace.belief.surface));
-  std::vector<std::uint8_t> in_box(input.points.size());
-  for (std::size_t i = 0; i < in_box.size(); ++i) {
-    in_box[i] = inAnyBox(input.boxes, input.points.u[i], input.points.v[i], 0.0f) ? 1 : 0;
-  }
-  MotionBeliefInput votes;
-  votes.points = input.points;
-  votes.distance = result.distance;
-  votes.label = result.stage.label;
-  votes.in_box = in_box;
-  if (!result.earlier.empty()) {
-    votes.earlier_u = result.earlier.front().flow.u;
-    votes.earlier_v = result.earlier.front().flow.v;
-  }
-  const MotionBelief nothing;
-  result.belief = updateMotionBelief(votes, input.memory != nullptr ? *input.memory : nothing,
-                                     options.belief, workspace.belief);
-  result.stage = applyMotionBelief(result.belief, in_box, workspace.belief.surface.is_dragged,
-                                   std::move(result.stage), options.belief, options.belief_verdict);
-  return result;
-}
-
 }  // namespace
 
 DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput& input,
@@ -256,8 +233,7 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
                                                  DynamicFeatureFilterWorkspace& workspace) {
   checkInput(input, options);
   checkKeyPoints(input.points);
-  const bool forms_beliefs =
-      options.use_belief && options.stage.rule == FilterRule::kHmc && !input.depth.empty();
+  const bool forms_beliefs = formsBeliefs(input, options);
   DynamicFeatureFilterResult result;
   result.distance.assign(input.points.size(), kNaN);
   internal::FlowSelection selection;
@@ -279,7 +255,38 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
     return result;
   }
   result.stage = stageOfSelection(selection, input, options, result.distance, workspace);
-  return withBelief(std::move(result), input, options, workspace);
+  std::vector<std::uint8_t> in_box(input.points.size());
+  for (std::size_t i = 0; i < in_box.size(); ++i) {
+    in_box[i] = inAnyBox(input.boxes, input.points.u[i], input.points.v[i], 0.0f) ? 1 : 0;
+  }
+  return judgeByBelief(std::move(result), input, in_box, options, workspace);
+}
+
+DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,
+                                         const DynamicFeatureFilterInput& input,
+                                         Span<const std::uint8_t> in_region,
+                                         const DynamicFeatureFilterOptions& options,
+                                         DynamicFeatureFilterWorkspace& workspace) {
+  if (!formsBeliefs(input, options)) {
+    return result;
+  }
+  workspace.belief.surface = surfaceDepths(input.depth, input.points.u, input.points.v,
+                                           options.surface, std::move(workspace.belief.surface));
+  MotionBeliefInput votes;
+  votes.points = input.points;
+  votes.distance = result.distance;
+  votes.label = result.stage.label;
+  votes.in_box = in_region;
+  if (!result.earlier.empty()) {
+    votes.earlier_u = result.earlier.front().flow.u;
+    votes.earlier_v = result.earlier.front().flow.v;
+  }
+  const MotionBelief nothing;
+  result.belief = updateMotionBelief(votes, input.memory != nullptr ? *input.memory : nothing,
+                                     options.belief, workspace.belief);
+  result.stage = applyMotionBelief(result.belief, workspace.belief.surface.is_dragged,
+                                   std::move(result.stage), options.belief, options.belief_verdict);
+  return result;
 }
 
 DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,

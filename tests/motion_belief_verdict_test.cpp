@@ -51,10 +51,9 @@ MotionBelief beliefOf(const std::vector<float>& moving) {
 }
 
 Judged judge(float moving, bool is_dragged, const Judged& before) {
-  const std::vector<std::uint8_t> in_box{1};
   const std::vector<std::uint8_t> dragged{static_cast<std::uint8_t>(is_dragged ? 1 : 0)};
-  const FilterStageResult stage = applyMotionBelief(
-      beliefOf({moving}), in_box, dragged, stageOf({before}), fixedOptions(), fixedVerdict());
+  const FilterStageResult stage = applyMotionBelief(beliefOf({moving}), dragged, stageOf({before}),
+                                                    fixedOptions(), fixedVerdict());
   return {stage.label[0], stage.weight[0]};
 }
 
@@ -102,7 +101,7 @@ TEST(BeliefVerdict, TheFrameIsCountedAgain) {
   stage.frame.dynamic_boxes = 1;
   const std::vector<std::uint8_t> flags(5, 0);
   const FilterStageResult result =
-      applyMotionBelief(beliefOf({0.0f, 0.9f, 0.1f, kNaN, 0.9f}), flags, flags, std::move(stage),
+      applyMotionBelief(beliefOf({0.0f, 0.9f, 0.1f, kNaN, 0.9f}), flags, std::move(stage),
                         fixedOptions(), fixedVerdict());
   EXPECT_EQ(result.frame.points, 5U);
   EXPECT_EQ(result.frame.dynamic, 2U);
@@ -119,20 +118,28 @@ TEST(BeliefVerdict, ErrorsNameTheArgument) {
     BeliefVerdictOptions verdict = fixedVerdict();
     change(belief, stage, verdict);
     return test::invalidArgumentOf(
-        [&] { applyMotionBelief(belief, one, one, stage, fixedOptions(), verdict); });
+        [&] { applyMotionBelief(belief, one, stage, fixedOptions(), verdict); });
   };
   using Belief = MotionBelief;
   using Stage = FilterStageResult;
   using Verdict = BeliefVerdictOptions;
-  EXPECT_EQ(message([](Belief& b, Stage&, Verdict&) { b = beliefOf({}); }),
-            "applyMotionBelief: 1 labels, but 1 weights, 0 beliefs, 1 and 1 flags; expected equal "
-            "sizes");
-  EXPECT_EQ(message([](Belief&, Stage& s, Verdict&) { s.weight.clear(); }),
-            "applyMotionBelief: 1 labels, but 0 weights, 1 beliefs, 1 and 1 flags; expected equal "
-            "sizes");
+  EXPECT_EQ(
+      message([](Belief& b, Stage&, Verdict&) { b = beliefOf({}); }),
+      "applyMotionBelief: 1 labels, but 1 weights, 0 beliefs and 1 flags; expected equal sizes");
+  EXPECT_EQ(
+      message([](Belief&, Stage& s, Verdict&) { s.weight.clear(); }),
+      "applyMotionBelief: 1 labels, but 0 weights, 1 beliefs and 1 flags; expected equal sizes");
   EXPECT_EQ(message([](Belief& b, Stage&, Verdict&) { b.belief.clear(); }),
             "applyMotionBelief: belief: u has 1 elements, v 1, depth 1, belief 0, weight 1; "
             "expected equal sizes");
+  EXPECT_EQ(
+      message([](Belief& b, Stage&, Verdict&) { b.belief[0] = 1.5f; }),
+      "applyMotionBelief: belief: point 0 has belief 1.500000, weight 1.000000; expected both "
+      "in [0, 1], or a belief of NaN");
+  EXPECT_EQ(
+      message([](Belief& b, Stage&, Verdict&) { b.weight[0] = kNaN; }),
+      "applyMotionBelief: belief: point 0 has belief 0.500000, weight nan; expected both in [0, "
+      "1], or a belief of NaN");
   EXPECT_EQ(message([](Belief&, Stage&, Verdict& v) { v.dragged_weight = 1.5f; }),
             "BeliefVerdictOptions::dragged_weight is 1.500000; expected a weight in [0, 1]");
   EXPECT_EQ(message([](Belief&, Stage&, Verdict&) {}), "nothing thrown");

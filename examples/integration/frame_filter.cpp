@@ -52,30 +52,10 @@ DynamicFeatureFilterResult filterRegions(DynamicFeatureFilterResult details,
   const BoxMembership membership = assignToRegions(region, input.boxes.size());
   details.stage = filterKeyPoints(input.points, details.distance, input.boxes, membership,
                                   options.stage, workspace.stage);
-  if (!options.use_belief || options.stage.rule != FilterRule::kHmc || input.depth.empty()) {
-    return details;
-  }
   std::vector<std::uint8_t> in_region(region.size());
   std::transform(region.begin(), region.end(), in_region.begin(),
                  [](int r) { return static_cast<std::uint8_t>(r != kNoRegion ? 1 : 0); });
-  workspace.belief.surface = surfaceDepths(input.depth, input.points.u, input.points.v,
-                                           options.surface, std::move(workspace.belief.surface));
-  MotionBeliefInput votes;
-  votes.points = input.points;
-  votes.distance = details.distance;
-  votes.label = details.stage.label;
-  votes.in_box = in_region;
-  if (!details.earlier.empty()) {
-    votes.earlier_u = details.earlier.front().flow.u;
-    votes.earlier_v = details.earlier.front().flow.v;
-  }
-  const MotionBelief nothing;
-  details.belief = updateMotionBelief(votes, input.memory != nullptr ? *input.memory : nothing,
-                                      options.belief, workspace.belief);
-  details.stage =
-      applyMotionBelief(details.belief, in_region, workspace.belief.surface.is_dragged,
-                        std::move(details.stage), options.belief, options.belief_verdict);
-  return details;
+  return judgeByBelief(std::move(details), input, in_region, options, workspace);
 }
 
 }  // namespace

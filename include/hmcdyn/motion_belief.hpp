@@ -96,7 +96,8 @@ struct MotionBelief {
   std::size_t size() const noexcept { return u.size(); }
 };
 
-/// @throws std::invalid_argument unless the five arrays have one size.
+/// @throws std::invalid_argument unless the five arrays have one size and beliefs and weights lie
+/// in [0, 1] (a belief may be NaN).
 inline void checkBelief(const MotionBelief& belief, const char* name) {
   const std::size_t n = belief.size();
   if (belief.v.size() != n || belief.depth.size() != n || belief.belief.size() != n ||
@@ -106,6 +107,15 @@ inline void checkBelief(const MotionBelief& belief, const char* name) {
                                 std::to_string(belief.depth.size()) + ", belief " +
                                 std::to_string(belief.belief.size()) + ", weight " +
                                 std::to_string(belief.weight.size()) + "; expected equal sizes");
+  }
+  const auto outside = [](float value) { return value < 0.0f || value > 1.0f; };  // not NaN
+  for (std::size_t i = 0; i < n; ++i) {
+    if (outside(belief.belief[i]) || !(belief.weight[i] >= 0.0f && belief.weight[i] <= 1.0f)) {
+      throw std::invalid_argument(std::string(name) + ": point " + std::to_string(i) +
+                                  " has belief " + std::to_string(belief.belief[i]) + ", weight " +
+                                  std::to_string(belief.weight[i]) +
+                                  "; expected both in [0, 1], or a belief of NaN");
+    }
   }
 }
 
@@ -354,10 +364,9 @@ struct BeliefVerdictOptions {
 /// keep what the steps before said, unless a nearer surface may have dragged them: then they are
 /// suspect at best. A box's decision stays as it was.
 ///
-/// @param stage of the same N points. @param in_box N flags.
+/// @param is_dragged N flags (SurfaceDepths). @param stage of the same N points.
 /// @throws std::invalid_argument when sizes differ or a weight is out of range.
 inline FilterStageResult applyMotionBelief(const MotionBelief& belief,
-                                           Span<const std::uint8_t> in_box,
                                            Span<const std::uint8_t> is_dragged,
                                            FilterStageResult stage,
                                            const MotionBeliefOptions& options = {},
@@ -365,12 +374,10 @@ inline FilterStageResult applyMotionBelief(const MotionBelief& belief,
   checkOptions(options);
   checkBelief(belief, "applyMotionBelief: belief");
   const std::size_t n = stage.label.size();
-  if (stage.weight.size() != n || belief.size() != n || in_box.size() != n ||
-      is_dragged.size() != n) {
+  if (stage.weight.size() != n || belief.size() != n || is_dragged.size() != n) {
     throw std::invalid_argument("applyMotionBelief: " + std::to_string(n) + " labels, but " +
                                 std::to_string(stage.weight.size()) + " weights, " +
-                                std::to_string(belief.size()) + " beliefs, " +
-                                std::to_string(in_box.size()) + " and " +
+                                std::to_string(belief.size()) + " beliefs and " +
                                 std::to_string(is_dragged.size()) + " flags; expected equal sizes");
   }
   if (!(verdict.dragged_weight >= 0.0f && verdict.dragged_weight <= 1.0f)) {
