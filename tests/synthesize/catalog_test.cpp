@@ -178,8 +178,8 @@ TEST(SceneCatalog, PeopleOfSynchronous2StepTogether) {
   const BuiltScene built = buildScene("synchronous2", options);
   ASSERT_EQ(built.scene.movers.size(), 2U);
   for (double time = 0.0; time < 9.0; time += 0.5) {
-    const auto first = built.scene.movers[0].poses(time)[0].translation();
-    const auto second = built.scene.movers[1].poses(time)[0].translation();
+    const Eigen::Vector3d first = built.scene.movers[0].poses(time)[0].translation();
+    const Eigen::Vector3d second = built.scene.movers[1].poses(time)[0].translation();
     EXPECT_NEAR(first.x(), second.x(), 0.02) << "at " << time << " s";
   }
 }
