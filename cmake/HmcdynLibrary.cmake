@@ -26,6 +26,7 @@ set(HMCDYN_CORE_HEADERS
     detail/grid_clusters.hpp
     detail/kd_tree.hpp
     detail/kd_tree_clusters.hpp
+    detail/laned_sum.hpp
     detail/minkowski.hpp
     detail/planar_points.hpp
     detail/union_find.hpp)

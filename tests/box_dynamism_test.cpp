@@ -92,6 +92,23 @@ TEST(BoxMembership, UnusableBoxesHoldNoPoint) {
   EXPECT_EQ(members(membership, 6), (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
+TEST(BoxMembership, HoldsWhatTheBoxContainsWhateverTheNumberOfPoints) {
+  for (const std::size_t n : {1U, 31U, 32U, 63U, 64U, 65U, 96U, 127U, 128U, 129U, 200U, 1000U}) {
+    const KeyPoints points = pointsInARow(n);
+    const DetectionBox middle = box(static_cast<float>(n) / 3, 0, static_cast<float>(n), 0, 0);
+    std::vector<std::uint32_t> expected;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (middle.contains(points.u[i], points.v[i])) {
+        expected.push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+    const BoxMembership membership =
+        assignToBoxes(points.view(), std::vector<DetectionBox>{middle, box(-1, -1, 1e6, 1, 0)});
+    EXPECT_EQ(members(membership, 0), expected) << n << " points";
+    EXPECT_EQ(membership.pointsIn(1).size(), n);
+  }
+}
+
 TEST(BoxMembership, ReusedMemoryLeavesNothingBehind) {
   const KeyPoints points = pointsInARow(5);
   BoxMembership membership =

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -73,6 +74,41 @@ TEST(Weights, AreWithinZeroAndOneForEveryInput) {
         const float weight = keptPointWeight(depth, {anchor, sigma}, options());
         EXPECT_TRUE(weight >= 0.0f && weight <= 1.0f)
             << weight << " at " << depth << " m, anchor " << anchor << " m, sigma " << sigma;
+      }
+    }
+  }
+}
+
+TEST(Weights, OfManyPointsAreThoseOfEach) {
+  test::Random random(11);
+  for (std::size_t n = 0; n <= 40; ++n) {
+    const DepthAnchor anchor{random.uniformFloat(0.5, 5.0), random.uniformFloat(0.01, 2.0)};
+    std::vector<float> depth;
+    for (std::size_t i = 0; i < n; ++i) {
+      depth.push_back(i % 7 == 3 ? kNaN : random.uniformFloat(-0.5, 9.0));
+    }
+    const std::vector<float> weight = keptPointWeights(depth, anchor, options(), {9.0f});
+    ASSERT_EQ(weight.size(), n);
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_NEAR(weight[i], keptPointWeight(depth[i], anchor, options()), 1e-6f)
+          << depth[i] << " m, anchor " << anchor.depth << " m, sigma " << anchor.sigma << " m";
+    }
+    std::reverse(depth.begin(), depth.end());
+    std::vector<float> turned = keptPointWeights(depth, anchor, options());
+    std::reverse(turned.begin(), turned.end());
+    EXPECT_EQ(turned, weight) << "the same wherever a point stands, " << n << " points";
+  }
+}
+
+TEST(Weights, OfManyPointsAreWithinZeroAndOneForEveryInput) {
+  const std::vector<float> special{0.0f,  -0.0f,   1.0f,     -1.0f,     1e-45f,     1e-38f, 1e-20f,
+                                   1e20f, 3.4e38f, -3.4e38f, kInfinity, -kInfinity, kNaN};
+  for (const float anchor : special) {
+    for (const float sigma : special) {
+      const std::vector<float> weight = keptPointWeights(special, {anchor, sigma}, options());
+      for (std::size_t i = 0; i < special.size(); ++i) {
+        EXPECT_NEAR(weight[i], keptPointWeight(special[i], {anchor, sigma}, options()), 1e-6f)
+            << special[i] << " m, anchor " << anchor << " m, sigma " << sigma << " m";
       }
     }
   }

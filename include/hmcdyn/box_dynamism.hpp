@@ -70,6 +70,17 @@ inline std::uint32_t pointsInBox(const KeyPointsView& points, std::size_t first,
   return bits;
 }
 
+/// Appends first + i for each bit i that is set.
+inline void appendOnes(std::uint64_t bits, std::uint32_t first,
+                       std::vector<std::uint32_t>& indices) {
+  const std::size_t before = indices.size();
+  indices.resize(before + countOnes(bits));
+  std::uint32_t* next = indices.data() + before;
+  for (; bits != 0; bits &= bits - 1) {
+    *next++ = first + lowestOne(bits);
+  }
+}
+
 }  // namespace detail
 
 /// @param reuse a result whose memory is taken over.
@@ -81,18 +92,22 @@ inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const Detec
   reuse.indices.clear();
   reuse.offsets.push_back(0);
   constexpr std::size_t kStep = 2 * detail::kBlock;
-  const std::size_t in_steps = points.size() / kStep * kStep;
+  const std::size_t n = points.size();
   for (const DetectionBox& box : boxes) {
-    for (std::size_t i = 0; i < in_steps; i += kStep) {
-      const std::uint64_t high = detail::pointsInBox(points, i + detail::kBlock, box);
-      std::uint64_t rest = detail::pointsInBox(points, i, box) | (high << detail::kBlock);
-      for (; rest != 0; rest &= rest - 1) {
-        reuse.indices.push_back(static_cast<std::uint32_t>(i) + detail::lowestOne(rest));
+    if (n < kStep) {
+      for (std::size_t i = 0; i < n; ++i) {
+        if (box.contains(points.u[i], points.v[i])) {
+          reuse.indices.push_back(static_cast<std::uint32_t>(i));
+        }
       }
-    }
-    for (std::size_t i = in_steps; i < points.size(); ++i) {
-      if (box.contains(points.u[i], points.v[i])) {
-        reuse.indices.push_back(static_cast<std::uint32_t>(i));
+    } else {
+      for (std::size_t i = 0; i < n; i += kStep) {
+        // The last step begins earlier, so that it is a whole one, and leaves out what was seen.
+        const std::size_t first = std::min(i, n - kStep);
+        const std::uint64_t high = detail::pointsInBox(points, first + detail::kBlock, box);
+        const std::uint64_t bits =
+            detail::pointsInBox(points, first, box) | (high << detail::kBlock);
+        detail::appendOnes(bits >> (i - first), static_cast<std::uint32_t>(i), reuse.indices);
       }
     }
     reuse.offsets.push_back(reuse.indices.size());

@@ -2,11 +2,10 @@
 // Steps 4 to 7 in one call: arrays in, labels and weights out.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +16,7 @@
 #include <hmcdyn/box_dynamism.hpp>
 #include <hmcdyn/cluster_filter.hpp>
 #include <hmcdyn/clustering.hpp>
+#include <hmcdyn/detail/laned_sum.hpp>
 #include <hmcdyn/peer_rules.hpp>
 #include <hmcdyn/types.hpp>
 #include <hmcdyn/weights.hpp>
@@ -126,69 +126,34 @@ struct FilterStageWorkspace {
   std::vector<float> box_depth;
   std::vector<float> box_distance;
   std::vector<float> box_threshold;
+  std::vector<float> box_weight;
   std::vector<std::uint8_t> in_dynamic_box;
 };
 
 namespace detail {
 
-/// Sum and count of some values, taken in kLanes sums, which vectorises.
-struct LanedSum {
-  std::array<double, kLanes> sum{};
-  std::array<std::uint32_t, kLanes> count{};
-
-  void add(std::size_t lane, double value, bool counts) noexcept {
-    sum[lane] += counts ? value : 0.0;
-    count[lane] += counts ? 1U : 0U;
-  }
-  double total() const noexcept { return std::accumulate(sum.begin(), sum.end(), 0.0); }
-  std::size_t number() const noexcept {
-    return std::accumulate(count.begin(), count.end(), std::size_t{0});
-  }
-};
-
-/// Adds `value(i)` for 0 <= i < n where `counts(i)`.
-template <class Value, class Counts>
-LanedSum sumOf(std::size_t n, Value&& value, Counts&& counts) {
-  LanedSum result;
-  const std::size_t in_lanes = n / kLanes * kLanes;
-  for (std::size_t i = 0; i < in_lanes; i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      result.add(lane, value(i + lane), counts(i + lane));
-    }
-  }
-  for (std::size_t i = in_lanes; i < n; ++i) {
-    result.add(i - in_lanes, value(i), counts(i));
-  }
-  return result;
-}
-
 /// Standard deviation of the depths that are there; 0 without any.
 inline float depthDeviation(Span<const float> depth) {
-  const auto usable = [depth](std::size_t i) {
+  const auto usable = [](float metres) {
     constexpr float kLargest = std::numeric_limits<float>::max();
-    const float metres = depth[i];
     // Without a branch. NOLINTBEGIN(readability-implicit-bool-conversion)
     return (metres > 0.0f) & (metres <= kLargest);
     // NOLINTEND(readability-implicit-bool-conversion)
   };
-  const LanedSum sum = sumOf(
-      depth.size(), [depth](std::size_t i) { return static_cast<double>(depth[i]); }, usable);
+  const LanedSum sum = sumOf(depth, usable, [](double metres) { return metres; });
   if (sum.number() == 0) {
     return 0.0f;
   }
   const double n = static_cast<double>(sum.number());
   const double mean = sum.total() / n;
-  const auto square = [depth, mean](std::size_t i) {
-    const double difference = static_cast<double>(depth[i]) - mean;
-    return difference * difference;
-  };
-  return static_cast<float>(std::sqrt(sumOf(depth.size(), square, usable).total() / n));
+  const auto square = [mean](double metres) { return (metres - mean) * (metres - mean); };
+  return static_cast<float>(std::sqrt(sumOf(depth, usable, square).total() / n));
 }
 
 inline float meanDistance(Span<const float> distance, std::size_t& measured) {
   const LanedSum sum = sumOf(
-      distance.size(), [distance](std::size_t i) { return static_cast<double>(distance[i]); },
-      [distance](std::size_t i) { return distance[i] == distance[i]; });
+      distance, [](float pixels) { return pixels == pixels; },
+      [](double pixels) { return pixels; });
   measured = sum.number();
   return measured == 0 ? 0.0f : static_cast<float>(sum.total() / static_cast<double>(measured));
 }
@@ -211,8 +176,34 @@ inline void resetDecisions(std::size_t n, std::vector<BoxDecision>& boxes,
   }
 }
 
-/// Steps 5 to 7 on dynamic box `b`. A point in several dynamic boxes keeps the strictest verdict:
-/// dynamic before unmatched before suspect, and the smallest weight.
+/// Brings the verdicts on one box's points into the frame's. A point in several dynamic boxes keeps
+/// the strictest: dynamic before unmatched before suspect, and the smallest weight.
+inline void takeOver(Span<const std::uint32_t> members, const Clustering& clustering,
+                     int first_cluster, FilterStageWorkspace& workspace) {
+  // Plain pointers: the arrays do not overlap, but the compiler cannot know.
+  const std::uint8_t* const is_dynamic = workspace.cluster_filter.is_dynamic.data();
+  const float* const distance = workspace.box_distance.data();
+  const float* const box_weight = workspace.box_weight.data();
+  const int* const box_cluster = clustering.label.data();
+  std::uint8_t* const in_dynamic_box = workspace.in_dynamic_box.data();
+  PointLabel* const label = workspace.result.label.data();
+  float* const weight = workspace.result.weight.data();
+  int* const cluster = workspace.result.cluster.data();
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const std::uint32_t i = members[k];
+    const bool was_dynamic = label[i] == PointLabel::kDynamic;
+    const bool dynamic = is_dynamic[k] != 0;
+    const PointLabel kept = std::isnan(distance[k]) ? PointLabel::kUnmatched : PointLabel::kSuspect;
+    in_dynamic_box[i] = 1;
+    weight[i] = std::min(weight[i], box_weight[k]);
+    label[i] = dynamic || was_dynamic ? PointLabel::kDynamic : kept;
+    if (box_cluster[k] != kNoise && (cluster[i] == kNoise || (dynamic && !was_dynamic))) {
+      cluster[i] = first_cluster + box_cluster[k];
+    }
+  }
+}
+
+/// Steps 5 to 7 on dynamic box `b`.
 inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<const float> distance,
                              const FilterStageOptions& options, FilterStageWorkspace& workspace) {
   FilterStageResult& result = workspace.result;
@@ -242,27 +233,12 @@ inline void filterDynamicBox(std::size_t b, const KeyPointsView& points, Span<co
         filtered.clusters[static_cast<std::size_t>(filtered.strongest)].mean_depth;
   }
 
+  workspace.box_weight = keptPointWeights(workspace.box_depth, decision.anchor, options.weights,
+                                          std::move(workspace.box_weight));  // step 7
   for (std::size_t k = 0; k < members.size(); ++k) {
-    const std::uint32_t i = members[k];
-    workspace.in_dynamic_box[i] = 1;
-    const PointLabel before = result.label[i];
-    PointLabel label = std::isnan(distance[i]) ? PointLabel::kUnmatched : PointLabel::kSuspect;
-    float weight = 0.0f;
-    if (filtered.is_dynamic[k] != 0) {
-      label = PointLabel::kDynamic;
-    } else {
-      weight = keptPointWeight(points.depth[i], decision.anchor, options.weights);  // step 7
-    }
-    result.weight[i] = std::min(result.weight[i], weight);
-    if (before != PointLabel::kDynamic) {
-      result.label[i] = label;
-    }
-    if (clustering.label[k] != kNoise &&
-        (result.cluster[i] == kNoise ||
-         (label == PointLabel::kDynamic && before != PointLabel::kDynamic))) {
-      result.cluster[i] = decision.first_cluster + clustering.label[k];
-    }
+    workspace.box_weight[k] *= static_cast<float>(1 - filtered.is_dynamic[k]);  // 0 when dynamic
   }
+  takeOver(members, clustering, decision.first_cluster, workspace);
 }
 
 /// The peers' rules know two verdicts only.

@@ -2,10 +2,18 @@
 // Step 7: how much a kept point of a dynamic box counts.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include <hmcdyn/detail/planar_points.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
@@ -58,6 +66,46 @@ inline float keptPointWeight(float depth, const DepthAnchor& anchor,
     return options.without_depth;
   }
   return 1.0f - depthSimilarity(depth, anchor);  // eq. 7
+}
+
+namespace detail {
+
+/// keptPointWeight of kLanes points and an anchor with a depth and a deviation.
+inline void weighLanes(const float* depth, const DepthAnchor& anchor, const WeightOptions& options,
+                       float* weight) {
+  using Lanes = Eigen::Array<float, static_cast<int>(kLanes), 1>;
+  const Lanes z = Eigen::Map<const Lanes>(depth);
+  const Lanes ratio = (z - anchor.depth) / anchor.sigma;
+  const Lanes kept = 1.0f - (-0.5f * ratio * ratio).exp();  // eq. 7 and 8
+  const auto has_depth = z > 0.0f && z <= std::numeric_limits<float>::max();
+  Eigen::Map<Lanes>{weight} = has_depth.select(kept, options.without_depth);
+}
+
+}  // namespace detail
+
+/// keptPointWeight of N points, several at a time; equal to it but for the rounding of exp (1e-6),
+/// and the same for a point wherever it stands.
+/// @param depth N depths (m). @param reuse a vector whose memory is taken over.
+inline std::vector<float> keptPointWeights(Span<const float> depth, const DepthAnchor& anchor,
+                                           const WeightOptions& options = {},
+                                           std::vector<float> reuse = {}) {
+  reuse.resize(depth.size());
+  // Both as frames have them, so that no difference or quotient overflows.
+  if (!(hasDepth(anchor.depth) && hasDepth(anchor.sigma))) {
+    std::transform(depth.begin(), depth.end(), reuse.begin(),
+                   [&](float z) { return keptPointWeight(z, anchor, options); });
+    return reuse;
+  }
+  const std::size_t in_lanes = depth.size() / detail::kLanes * detail::kLanes;
+  for (std::size_t i = 0; i < in_lanes; i += detail::kLanes) {
+    detail::weighLanes(depth.data() + i, anchor, options, reuse.data() + i);
+  }
+  // The last lanes are filled up: fewer would take another exp.
+  std::array<float, detail::kLanes> rest{};
+  std::copy(depth.begin() + in_lanes, depth.end(), rest.begin());
+  detail::weighLanes(rest.data(), anchor, options, rest.data());
+  std::copy_n(rest.begin(), depth.size() - in_lanes, reuse.begin() + in_lanes);
+  return reuse;
 }
 
 }  // namespace hmcdyn
