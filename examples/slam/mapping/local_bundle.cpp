@@ -94,6 +94,14 @@ LocalBundle makeLocalBundle(const Map& map, const LocalBundleOptions& options) {
   for (const int key_frame : fixed) {
     add(key_frame, true);
   }
+  for (const auto& [key_frame, pose] : pose_of) {
+    const std::optional<KeyFrameMotion>& motion =
+        map.keyFrames()[static_cast<std::size_t>(key_frame)].motion;
+    const auto from = motion ? pose_of.find(motion->from) : pose_of.end();
+    if (from != pose_of.end()) {
+      bundle.problem.motions.push_back({from->second, pose, motion->to_from, motion->information});
+    }
+  }
   for (std::size_t k = 0; k < bundle.points.size(); ++k) {
     const MapPoint& point = map.points()[static_cast<std::size_t>(bundle.points[k])];
     bundle.problem.points.push_back(point.position);

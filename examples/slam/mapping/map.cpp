@@ -101,6 +101,11 @@ void Map::insertKeyFrame(Frame frame) {
       ++key_frame.map_points;
     }
   }
+  if (frame.prior && !key_frames_.empty()) {
+    key_frame.motion =
+        KeyFrameMotion{number - 1, frame.prior->camera_from_world * poseOf(number - 1).inverse(),
+                       frame.prior->covariance.inverse()};
+  }
   key_frame.frame = std::move(frame);
   key_frames_.push_back(std::move(key_frame));
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -44,11 +45,19 @@ struct MapPoint {
 };
 
 /// A frame that the map remembers. Its number is its place in Map::keyFrames().
+/// What the motion before a key frame says of where it stands to the one before it.
+struct KeyFrameMotion {
+  int from = 0;                                               ///< The key frame before.
+  Eigen::Isometry3d to_from = Eigen::Isometry3d::Identity();  ///< Its frame to this one's.
+  Eigen::Matrix<double, 6, 6> information;  ///< Inverse covariance, as PosePrior has it.
+};
+
 struct KeyFrame {
   Frame frame;                 ///< Without features once it is removed.
   std::size_t map_points = 0;  ///< Key points that had a map point when it was inserted.
-  bool removed = false;        ///< Superfluous: others see what it saw.
-  int anchor = -1;             ///< Of a removed one: the key frame that it now hangs on ...
+  std::optional<KeyFrameMotion> motion;
+  bool removed = false;  ///< Superfluous: others see what it saw.
+  int anchor = -1;       ///< Of a removed one: the key frame that it now hangs on ...
   Eigen::Isometry3d from_anchor = Eigen::Isometry3d::Identity();  ///< ... and by what.
 };
 
@@ -60,9 +69,10 @@ struct MapOptions {
   /// have seen it.
   double min_found_share = 0.25;
   StaticBeliefOptions belief;
-  /// A key frame is superfluous when this share of its points has this many other observers.
+  /// A key frame is superfluous when this share of its points has more observers than this. What it
+  /// saw is lost to later adjustments, so that three (as in ORB-SLAM) cost accuracy.
   double superfluous_share = 0.9;
-  std::size_t superfluous_observers = 3;
+  std::size_t superfluous_observers = 8;
   /// Depth noise of the sensor, sigma = floor + quadratic z^2 (m); Khoshelham, Elberink 2012.
   double depth_noise_floor = 0.001;
   double depth_noise_quadratic = 1.425e-3;

@@ -13,6 +13,7 @@
 
 #include "slam/optimization/bundle_cost.hpp"
 #include "slam/optimization/optimization_input.hpp"
+#include "slam/optimization/pose_graph_cost.hpp"
 #include "slam/optimization/se3_manifold.hpp"
 
 namespace hmcdyn::slam {
@@ -38,6 +39,18 @@ void checkOptions(const BundleOptions& options) {
   requireNotNegative("options.function_tolerance", options.function_tolerance);
   requireAtLeast("options.max_dense_poses", options.max_dense_poses, 0);
   requireAtLeast("options.threads", options.threads, 1);
+}
+
+void checkMotions(const BundleProblem& problem) {
+  for (std::size_t i = 0; i < problem.motions.size(); ++i) {
+    const BundleMotion& motion = problem.motions[i];
+    const std::string name = "motions[" + std::to_string(i) + "].";
+    requireIndex(name + "from", motion.from, problem.poses.size());
+    requireIndex(name + "to", motion.to, problem.poses.size());
+    require(motion.from != motion.to, name + "to", std::to_string(motion.to), "another than from");
+    requireRigid(name + "to_from", motion.to_from);
+    squareRootOf(motion.information, name + "information");
+  }
 }
 
 void checkProblem(const BundleProblem& problem) {
@@ -214,9 +227,11 @@ ceres::Solver::Options solverOptions(const BundleOptions& options, std::size_t f
 
 /// One optimisation over the active observations.
 ceres::Solver::Summary solveRound(const std::vector<Candidate>& candidates, const Freedom& freedom,
+                                  const std::vector<BundleMotion>& motions,
                                   const BundleModel& model, const BundleOptions& options,
                                   bool robust, State& state) {
   std::deque<BundleCost> costs;  // outlives the problem, as the losses do
+  std::deque<PoseGraphCost> motion_costs;
   Losses losses(options, robust);
   Se3Manifold manifold;
   ceres::Problem::Options ownership;
@@ -251,6 +266,15 @@ ceres::Solver::Summary solveRound(const std::vector<Candidate>& candidates, cons
     costs.emplace_back(candidate.measurement, model);
     problem.AddResidualBlock(&costs.back(), losses.of(candidate), pose, point);
     ordering->AddElementToGroup(point, 0);
+  }
+  for (const BundleMotion& motion : motions) {
+    const auto from = static_cast<std::size_t>(motion.from);
+    const auto to = static_cast<std::size_t>(motion.to);
+    if (known_pose[from] != 0 && known_pose[to] != 0) {
+      motion_costs.emplace_back(motion.to_from, squareRootOf(motion.information, "information"));
+      problem.AddResidualBlock(&motion_costs.back(), nullptr, state.poses[from].data(),
+                               state.poses[to].data());
+    }
   }
   StopCallback callback(options.stop);
   if (options.stop != nullptr) {
@@ -307,7 +331,7 @@ BundleSolution runRounds(const BundleProblem& problem, const std::vector<Candida
     }
     const bool robust = round < options.rounds - options.plain_rounds;
     const ceres::Solver::Summary summary =
-        solveRound(candidates, freedom, model, options, robust, state);
+        solveRound(candidates, freedom, problem.motions, model, options, robust, state);
     // The first entry is the evaluation at the start.
     solution.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
     if (!summary.IsSolutionUsable() || !std::isfinite(summary.final_cost) ||
@@ -355,6 +379,7 @@ const char* toString(BundleTermination termination) noexcept {
 BundleSolution adjustBundle(const BundleProblem& problem, const BundleOptions& options) {
   checkOptions(options);
   checkProblem(problem);
+  checkMotions(problem);
   const BundleModel model{problem.camera, options.min_depth};
 
   BundleSolution solution;

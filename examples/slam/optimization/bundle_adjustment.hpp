@@ -32,6 +32,16 @@ struct BundleObservation {
   float weight = 1.0f;  ///< lambda of eq. 7, >= 0. 0 leaves the observation out.
 };
 
+/// What is known of the way from one key frame to another, besides what they see: the camera's
+/// motion between them.
+struct BundleMotion {
+  int from = 0;  ///< Index of a key frame.
+  int to = 0;    ///< Index of another.
+  Eigen::Isometry3d to_from = Eigen::Isometry3d::Identity();
+  /// Inverse covariance of (rotation vector (rad), translation (m)) in the camera's frame of `to`.
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Identity();
+};
+
 /// Key frames, points and what the first saw of the second: a copy, so that it can be solved beside
 /// a map that goes on changing.
 struct BundleProblem {
@@ -39,6 +49,7 @@ struct BundleProblem {
   std::vector<BundlePose> poses;
   std::vector<Eigen::Vector3d> points;  ///< World (m).
   std::vector<BundleObservation> observations;
+  std::vector<BundleMotion> motions;  ///< May be empty.
 };
 
 struct BundleOptions {
@@ -94,16 +105,20 @@ struct BundleSolution {
 /// Key frames and points together, from where they were seen.
 ///
 /// Minimises sum lambda^2 rho(|e|^2), e = Q^-1/2 (z - h(R X + t)), the cost of refinePose() with
-/// DepthRow::kDepth, over the poses that are not fixed and all points, by Levenberg-Marquardt with
-/// the points eliminated first (Schur complement). The first rounds are robust; after each, the
-/// observations that contradict the result are left out, and others may come back.
+/// DepthRow::kDepth, plus d^T information d of each motion, d as in optimizePoseGraph(), over the
+/// poses that are not fixed and all points, by Levenberg-Marquardt with the points eliminated first
+/// (Schur complement). The first rounds are robust; after each, the observations that contradict
+/// the result are left out, and others may come back.
 ///
 /// What cannot be determined stays where it is: a point with a single observation without depth, a
 /// pose with fewer than three usable observations, what no usable observation names. An
 /// observation from behind its camera takes no part in the round. Without a fixed pose among
 /// those that are used, the first of them is held.
 ///
-/// @throws std::invalid_argument for an index outside its array, a sigma that is not positive and
+/// A motion counts where both its key frames have usable observations.
+///
+/// @throws std::invalid_argument for an index outside its array, an information that is not
+///   symmetric and positive semidefinite, a sigma that is not positive and
 ///   finite, a weight that is negative or not finite, a pose that is not a finite rigid motion,
 ///   focal lengths that are not positive, options out of their range.
 BundleSolution adjustBundle(const BundleProblem& problem, const BundleOptions& options = {});

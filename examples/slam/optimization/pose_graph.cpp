@@ -19,21 +19,6 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// S with S^T S = information.
-Matrix6d squareRootOf(const Matrix6d& information, const std::string& argument) {
-  require(information.allFinite(), argument, "not finite", "a finite matrix");
-  const double size = information.norm();
-  constexpr double kRounding = 1e-9;
-  require((information - information.transpose()).norm() <= kRounding * size, argument,
-          "not symmetric", "a symmetric matrix");
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
-  require(eigen.eigenvalues()(0) >= -kRounding * size, argument,
-          "of the eigenvalue " + std::to_string(eigen.eigenvalues()(0)),
-          "a positive semidefinite matrix");
-  return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         eigen.eigenvectors().transpose();
-}
-
 void checkInput(const PoseGraphProblem& problem, const PoseGraphOptions& options) {
   requirePositive("options.huber", options.huber);
   requireAtLeast("options.max_iterations", options.max_iterations, 1);

@@ -2,7 +2,11 @@
 #include "slam/optimization/pose_graph_cost.hpp"
 
 #include <cmath>
+#include <string>
 
+#include <Eigen/Eigenvalues>
+
+#include "slam/optimization/optimization_input.hpp"
 #include "slam/optimization/se3_manifold.hpp"
 
 namespace hmcdyn::slam {
@@ -24,6 +28,20 @@ Eigen::Matrix3d inverseLeftJacobian(const Eigen::Vector3d& phi) {
 }
 
 }  // namespace
+
+Matrix6d squareRootOf(const Matrix6d& information, const std::string& argument) {
+  require(information.allFinite(), argument, "not finite", "a finite matrix");
+  const double size = information.norm();
+  constexpr double kRounding = 1e-9;
+  require((information - information.transpose()).norm() <= kRounding * size, argument,
+          "not symmetric", "a symmetric matrix");
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
+  require(eigen.eigenvalues()(0) >= -kRounding * size, argument,
+          "of the eigenvalue " + std::to_string(eigen.eigenvalues()(0)),
+          "a positive semidefinite matrix");
+  return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
 
 // NOLINTNEXTLINE(modernize-pass-by-value): Eigen types are not passed by value
 PoseGraphCost::PoseGraphCost(const Eigen::Isometry3d& to_from, const Matrix6d& square_root)

@@ -2,6 +2,8 @@
 // The residual of one edge of a pose graph and its derivatives.
 #pragma once
 
+#include <string>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <ceres/cost_function.h>
@@ -9,6 +11,12 @@
 #include "slam/optimization/pose_graph.hpp"
 
 namespace hmcdyn::slam {
+
+/// S with S^T S = information.
+/// @throws std::invalid_argument naming the argument unless it is finite, symmetric and positive
+///   semidefinite.
+Eigen::Matrix<double, 6, 6> squareRootOf(const Eigen::Matrix<double, 6, 6>& information,
+                                         const std::string& argument);
 
 /// S d with S^T S = information, d = (Log R, t) of T_to T_from^-1 to_from^-1; blocks: from, to.
 class PoseGraphCost final : public ceres::CostFunction {

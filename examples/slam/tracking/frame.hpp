@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,6 +18,12 @@ namespace hmcdyn::slam {
 /// "No map point": what a key point without one refers to.
 inline constexpr int kNoMapPoint = -1;
 
+/// Where the motion before a frame puts its camera.
+struct PosePrior {
+  Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
+  Eigen::Matrix<double, 6, 6> covariance;  ///< As MotionPrediction has it.
+};
+
 /// A frame on its way through the tracker: what was seen, what the filter said, and where it is.
 struct Frame {
   std::size_t index = 0;
@@ -31,9 +38,10 @@ struct Frame {
   bool soft_weights = false;            ///< The 0.6 rule: eq. 7's weights, or 0 and 1 only.
 
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
-  std::vector<int> map_point;  ///< N map points, or kNoMapPoint.
-  bool tracked = false;        ///< camera_from_world is a measurement.
-  std::size_t inliers = 0;     ///< Map points that agree with it.
+  std::optional<PosePrior> prior;  ///< None where the motion model knows nothing, or was wrong.
+  std::vector<int> map_point;      ///< N map points, or kNoMapPoint.
+  bool tracked = false;            ///< camera_from_world is a measurement.
+  std::size_t inliers = 0;         ///< Map points that agree with it.
 };
 
 /// Depth (m) at key points, the nearest pixel's; where that has none, the median of its eight

@@ -59,9 +59,7 @@ const char* toString(TrackingFailure failure) noexcept {
 }
 
 Tracker::Tracker(const PinholeCamera& camera, const TrackerOptions& options)
-    : camera_(camera), options_(options), map_(camera, options_.map) {}
-
-Eigen::Isometry3d Tracker::predict() const { return velocity_ * last_->camera_from_world; }
+    : camera_(camera), options_(options), map_(camera, options_.map), motion_(options_.motion) {}
 
 PoseRefinementResult Tracker::refine(const Frame& frame, const std::vector<PointMatch>& matches,
                                      const Eigen::Isometry3d& initial) const {
@@ -139,13 +137,16 @@ TrackingResult Tracker::initialize(Frame frame) {
   map_.insertKeyFrame(frame);
   result.new_key_frame = true;
   result.inliers = map_.keyFrames().back().map_points;
+  constexpr double kExact = 1e-12;  // the first camera is the world's origin
+  motion_.update(frame.timestamp, frame.camera_from_world,
+                 kExact * MotionModel::Matrix6::Identity());
   last_ = std::move(frame);
   return result;
 }
 
 TrackingResult Tracker::lose() {
   lost_ = true;
-  velocity_ = Eigen::Isometry3d::Identity();
+  motion_.reset();
   TrackingResult result;
   result.failure = TrackingFailure::kTooFewMatches;
   return result;
@@ -160,6 +161,7 @@ void Tracker::apply(const MapCorrection& correction) {
       last_->camera_from_world * map_.poseOf(reference).inverse();
   map_.apply(correction);
   last_->camera_from_world = from_reference * map_.poseOf(reference);
+  motion_.relocate(last_->camera_from_world);
 }
 
 void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search) {
@@ -208,9 +210,12 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   const KeyPointGrid grid(frame);
   const std::vector<int> candidates = map_.pointsOf(map_.localKeyFrames(*last_));
 
+  const std::optional<MotionPrediction> expected = motion_.predict(frame.timestamp);
   Estimate coarse;
   if (!lost_) {
-    coarse = estimate(frame, grid, candidates, predict(), options_.prediction_radius);
+    coarse = estimate(frame, grid, candidates,
+                      expected ? expected->camera_from_world : last_->camera_from_world,
+                      options_.prediction_radius);
     if (coarse.refinement.inliers < options_.min_inliers) {
       coarse = estimate(frame, grid, candidates, last_->camera_from_world, options_.wide_radius);
     }
@@ -235,7 +240,12 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
       frame.map_point[fine.search.matches[k].key_point] = fine.search.matches[k].map_point;
     }
   }
-  frame.camera_from_world = fine.refinement.camera_from_world;
+  const MotionModel::Update update = motion_.update(
+      frame.timestamp, fine.refinement.camera_from_world, fine.refinement.covariance);
+  frame.camera_from_world = update.camera_from_world;
+  if (update.fused && expected && expected->covariance) {
+    frame.prior = PosePrior{expected->camera_from_world, *expected->covariance};
+  }
   frame.tracked = true;
   frame.inliers = fine.refinement.inliers;
   countSightings(frame, fine.search);
@@ -245,8 +255,6 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   result.inliers = frame.inliers;
   result.camera_from_world = frame.camera_from_world;
   result.relocalized = lost_;
-  velocity_ = lost_ ? Eigen::Isometry3d::Identity()
-                    : frame.camera_from_world * last_->camera_from_world.inverse();
   lost_ = false;
   if (needsKeyFrame(frame)) {
     map_.cull();

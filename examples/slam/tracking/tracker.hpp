@@ -15,6 +15,7 @@
 #include "slam/mapping/map.hpp"
 #include "slam/tracking/frame.hpp"
 #include "slam/tracking/matcher.hpp"
+#include "slam/tracking/motion_model.hpp"
 
 namespace hmcdyn::slam {
 
@@ -36,6 +37,7 @@ struct TrackerOptions {
   MapOptions map;
   MatcherOptions matcher;
   PoseRefinementOptions refinement = rgbdRefinement();
+  MotionModelOptions motion;
   KeyFramePolicy key_frames;
   float prediction_radius = 15.0f;  ///< Search window around the predicted pose (px).
   float wide_radius = 40.0f;        ///< The same after a first failure (px).
@@ -64,8 +66,9 @@ struct TrackingResult {
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
 };
 
-/// Camera tracking against a small local map: constant-velocity prediction, projection matching,
-/// weighted refinement (eq. 9-10), key frames. The first frame's camera is the world's origin.
+/// Camera tracking against a small local map: prediction by the motion model, projection matching,
+/// weighted refinement (eq. 9-10), fusion with the motion model, key frames. The first frame's
+/// camera is the world's origin.
 class Tracker {
  public:
   Tracker(const PinholeCamera& camera, const TrackerOptions& options);
@@ -88,7 +91,6 @@ class Tracker {
     ProjectionSearch search;
   };
 
-  Eigen::Isometry3d predict() const;
   Estimate estimate(const Frame& frame, const KeyPointGrid& grid,
                     const std::vector<int>& candidates, const Eigen::Isometry3d& around,
                     float radius) const;
@@ -105,8 +107,8 @@ class Tracker {
   PinholeCamera camera_;
   TrackerOptions options_;
   Map map_;
-  std::optional<Frame> last_;                                   ///< The last tracked frame.
-  Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  ///< Last step, camera from camera.
+  std::optional<Frame> last_;  ///< The last tracked frame.
+  MotionModel motion_;
   bool lost_ = false;
   mutable PoseRefinementWorkspace workspace_;  ///< Memory only: changes no result.
 };

@@ -14,7 +14,14 @@ namespace {
 
 class MapTest : public testing::Test {
  protected:
-  MapTest() : room_(11, 200), map_(kCamera, {}) {}
+  MapTest() : room_(11, 200), map_(kCamera, options()) {}
+
+  /// A few key frames are enough to make others superfluous.
+  static MapOptions options() {
+    MapOptions options;
+    options.superfluous_observers = 3;
+    return options;
+  }
 
   Frame see(std::size_t index, double x) const {
     Frame frame = room_.see(index, movedBy(x, 0.0));
