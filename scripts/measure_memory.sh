@@ -54,6 +54,7 @@ done
 [[ -x $slam ]] || { echo "${0##*/}: $slam is missing; build the preset first" >&2 && exit 1; }
 
 looped=$output/sequence
+rm -rf "$output/run"
 mkdir -p "$looped"
 ln -sfn "$sequence/rgb" "$looped/rgb"
 ln -sfn "$sequence/depth" "$looped/depth"
@@ -92,7 +93,8 @@ while kill -0 "$pid" 2>/dev/null; do
   memory=$(awk '/^VmRSS/ { rss = $2 } /^VmHWM/ { peak = $2 }
                 END { if (rss) printf "%.1f,%.1f", rss / 1024, peak / 1024 }' \
     "/proc/$pid/status" 2>/dev/null) || true
-  rows=$(wc -l <"$output/run/timings.csv" 2>/dev/null) || rows=0
+  rows=0
+  [[ -f $output/run/timings.csv ]] && rows=$(wc -l <"$output/run/timings.csv")
   [[ -n $memory ]] && echo "$((rows > 0 ? rows - 1 : 0)),$memory" >>"$samples"
   sleep 0.2
 done

@@ -196,7 +196,8 @@ nlohmann::json toJson(const RunCounts& counts) {
             {"failed", counts.detections.failed}}},
           {"boxes_bridged", counts.boxes_bridged},
           {"dense_map_points", counts.map_points},
-          {"stopped_by_signal", counts.stopped}};
+          {"stopped_by_signal", counts.stopped},
+          {"write_failures", counts.write_failures}};
 }
 
 nlohmann::json libraryVersions() {

@@ -37,6 +37,7 @@ struct RunCounts {
   std::size_t boxes_bridged = 0;                   ///< Boxes that the detector missed.
   std::size_t map_points = 0;                      ///< Of the dense map.
   bool stopped = false;                            ///< By a signal.
+  std::vector<std::string> write_failures;         ///< File and reason; the first ended the run.
   SourceCounts source;
   DetectionCounts detections;
 

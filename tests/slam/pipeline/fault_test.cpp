@@ -3,6 +3,9 @@
 // are counted and named; what was computed is on disk.
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +17,7 @@
 
 #include "dataset/temporary_folder.hpp"
 #include "pipeline/toy_sequence.hpp"
+#include "slam/detection/detector.hpp"
 #include "slam/pipeline/options.hpp"
 #include "slam/pipeline/run.hpp"
 
@@ -79,6 +83,11 @@ void expectLost(const nlohmann::json& summary, const std::vector<std::string>& s
     named.push_back(fmt::format("{:.6f}", stamp.get<double>()));
   }
   EXPECT_EQ(named, lost);
+}
+
+std::string contentOf(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 double worstError(const nlohmann::json& summary) {
@@ -222,6 +231,100 @@ TEST_F(Fault, OneFrameIsARun) {
   for (const char* file : {"keyframes.txt", "map.ply", "report.html", "summary.json"}) {
     EXPECT_TRUE(std::filesystem::exists(options.output / file)) << file;
   }
+}
+
+/// Finds a person over the left third, until it breaks.
+class BreakingDetector final : public ObjectDetector {
+ public:
+  explicit BreakingDetector(double breaks_at) : breaks_at_(breaks_at) {}
+
+  std::vector<DetectionBox> detect(const cv::Mat&, double timestamp) override {
+    if (timestamp >= breaks_at_) {
+      throw std::runtime_error("the network is gone");
+    }
+    DetectionBox box;
+    box.x_max = 100.0f;
+    box.y_max = 239.0f;
+    box.score = 0.9f;
+    box.class_id = kPersonClassId;
+    return {box};
+  }
+  std::string name() const override { return "breaking"; }
+
+ private:
+  double breaks_at_;
+};
+
+TEST_F(Fault, ADetectorThatThrowsInTheMiddleIsCountedAndTrackingGoesOn) {
+  ToySequence toy;
+  toy.frames = 30;
+  toy.step = 0.003;
+  const SlamOptions options = optionsFor(toy);
+  const nlohmann::json summary =
+      runSlam(options, {}, std::make_unique<BreakingDetector>(1000.0 + 9.5 / 30.0));
+  const nlohmann::json& counts = summary.at("counts");
+  EXPECT_EQ(counts.at("detections").at("detected"), 10);
+  EXPECT_EQ(counts.at("detections").at("failed"), 20);
+  EXPECT_GE(counts.at("frames_with_boxes").get<int>(), 10);  // and those that are carried on
+  expectLost(summary, stampsOf(), 30, 0, 0);
+  EXPECT_LT(worstError(summary), kExact);
+}
+
+TEST_F(Fault, InRealTimeADetectorThatThrowsIsNoEndEither) {
+  ToySequence toy;
+  toy.frames = 20;
+  toy.step = 0.003;
+  SlamOptions options = optionsFor(toy);
+  options.mode = RunMode::kRealtime;
+  const nlohmann::json summary = runSlam(options, {}, std::make_unique<BreakingDetector>(0.0));
+  const nlohmann::json& counts = summary.at("counts");
+  EXPECT_EQ(counts.at("detections").at("detected"), 0);
+  EXPECT_GE(counts.at("detections").at("failed").get<int>(), 1);
+  // How many frames are dropped is the machine's affair; the others are tracked.
+  EXPECT_EQ(counts.at("frames_tracked").get<int>() + counts.at("frames_dropped").get<int>(), 20);
+  EXPECT_EQ(stampsOf().size(), counts.at("frames_tracked").get<std::size_t>());
+}
+
+TEST_F(Fault, ListsOutOfOrderAndLinesThatComeTwiceChangeNothing) {
+  ToySequence toy;
+  toy.frames = 10;
+  SlamOptions options = optionsFor(toy);
+  runSlam(options);
+  const std::string in_order = contentOf(options.output / "trajectory.txt");
+  for (const char* list : {"rgb.txt", "depth.txt"}) {
+    std::ifstream lines(options.dataset / list);
+    std::vector<std::string> reversed;
+    for (std::string line; std::getline(lines, line);) {
+      reversed.insert(reversed.begin(), line + "\n");
+    }
+    std::ofstream out(options.dataset / list);
+    for (const std::string& line : reversed) {
+      out << line << line;
+    }
+  }
+  const nlohmann::json summary = runSlam(options);
+  EXPECT_EQ(summary.at("counts").at("frames_in"), 10);
+  EXPECT_EQ(contentOf(options.output / "trajectory.txt"), in_order);
+}
+
+TEST_F(Fault, OneTimeStampForTwoPicturesIsRefusedWithFileAndLine) {
+  const SlamOptions options = optionsFor({});
+  std::ofstream(options.dataset / "rgb.txt", std::ios::app)
+      << toyStamp(3) << " rgb/" << toyStamp(4) << ".png\n";
+  EXPECT_TRUE(
+      hmcdyn::test::mentions(hmcdyn::test::messageOf<std::runtime_error>([&] { runSlam(options); }),
+                             {"rgb.txt:9", toyStamp(3), "line 4"}));
+}
+
+TEST_F(Fault, ARunThatIsStoppedCountsOnlyWhatItTookUp) {
+  ToySequence toy;
+  toy.frames = 10;
+  int asked = 0;
+  const nlohmann::json summary = runSlam(optionsFor(toy), [&asked] { return ++asked > 4; });
+  EXPECT_EQ(summary.at("counts").at("stopped_by_signal"), true);
+  EXPECT_EQ(summary.at("counts").at("frames_in"), 4);
+  EXPECT_EQ(summary.at("counts").at("frames_tracked"), 4);
+  EXPECT_EQ(stampsOf().size(), 4U);
 }
 
 }  // namespace
