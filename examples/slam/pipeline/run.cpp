@@ -149,7 +149,7 @@ struct Run {
   RunWriter writer;
   WriteAttempts writing;
   RunCounts counts;
-  std::vector<StageTimes> times;
+  StageHistory times;
 };
 
 /// False where the frame's results could not be written.
@@ -159,7 +159,7 @@ bool doFrame(Run& run, const PreparedFrame& frame) {
   const FrameOutcome outcome = trackFrame(frame, std::move(boxes), run.pipeline);
   run.counts.add(outcome.filtered);
   run.counts.add(outcome.image.timestamp, outcome.tracking);
-  run.times.push_back(outcome.times);
+  run.times.add(outcome.times);
   if (run.dense && outcome.tracking.new_key_frame) {
     run.dense->add(run.pipeline.map().keyFrames().size() - 1, outcome);
   }

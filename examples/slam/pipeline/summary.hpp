@@ -58,7 +58,7 @@ struct RunNames {
 /// summary.json. @param groundtruth empty = none.
 nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
                             const RunCounts& counts, const Pipeline& pipeline,
-                            const std::vector<StageTimes>& times,
+                            const StageHistory& times,
                             const std::filesystem::path& groundtruth);
 
 /// The options as JSON, complete enough to repeat the run.
