@@ -106,8 +106,7 @@ double trackingCpuMs(const std::vector<StageSummary>& stages) {
 
 nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
                             const RunCounts& counts, const Pipeline& pipeline,
-                            const StageHistory& times,
-                            const std::filesystem::path& groundtruth) {
+                            const StageHistory& times, const std::filesystem::path& groundtruth) {
   const std::vector<StageSummary> stages = times.summarize();
   nlohmann::json summary;
   summary["source"] = names.source;

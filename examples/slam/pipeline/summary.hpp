@@ -58,8 +58,7 @@ struct RunNames {
 /// summary.json. @param groundtruth empty = none.
 nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
                             const RunCounts& counts, const Pipeline& pipeline,
-                            const StageHistory& times,
-                            const std::filesystem::path& groundtruth);
+                            const StageHistory& times, const std::filesystem::path& groundtruth);
 
 /// The options as JSON, complete enough to repeat the run.
 nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name);

@@ -238,7 +238,7 @@ class BreakingDetector final : public ObjectDetector {
  public:
   explicit BreakingDetector(double breaks_at) : breaks_at_(breaks_at) {}
 
-  std::vector<DetectionBox> detect(const cv::Mat&, double timestamp) override {
+  std::vector<DetectionBox> detect(const cv::Mat& /*bgr*/, double timestamp) override {
     if (timestamp >= breaks_at_) {
       throw std::runtime_error("the network is gone");
     }
