@@ -39,6 +39,10 @@ RunSummary parse(const nlohmann::json& summary) {
   if (counts.at("stopped_by_signal").get<bool>()) {
     throw std::invalid_argument("the run was stopped before its end");
   }
+  if (counts.contains("write_failures") && !counts.at("write_failures").empty()) {
+    throw std::invalid_argument("the run could not write its results: " +
+                                counts.at("write_failures").front().get<std::string>());
+  }
   RunSummary run;
   run.frames = counts.at("frames_in").get<std::size_t>();
   run.tracked = counts.at("frames_tracked").get<std::size_t>();

@@ -81,6 +81,9 @@ TEST_F(RunSummaries, WhatIsNotFinishedIsRefused) {
   EXPECT_THAT(
       errorOf(replaced(kComplete, "\"stopped_by_signal\": false", "\"stopped_by_signal\": true")),
       HasSubstr("stopped before its end"));
+  EXPECT_THAT(errorOf(replaced(kComplete, "\"stopped_by_signal\": false",
+                               "\"stopped_by_signal\": false, \"write_failures\": [\"full\"]")),
+              HasSubstr("could not write its results: full"));
   EXPECT_THAT(errorOf(replaced(kComplete, "\"frames_in\": 49", "\"frames_in\": 0")),
               HasSubstr("48 of 0 frames tracked"));
   EXPECT_THAT(errorOf(replaced(kComplete, "\"frames_in\": 49", "\"frames_in\": 40")),

@@ -41,6 +41,9 @@ DetectionThread::Answer DetectionThread::detect(ObjectDetector& detector,
   } catch (const std::exception& error) {
     answer.detection.failed = true;
     answer.error = error.what();
+  } catch (...) {
+    answer.detection.failed = true;
+    answer.error = "it threw what is no std::exception";
   }
   const StageTime time = timer.elapsed("detect");
   answer.detection.wall_ms = time.wall_ms;

@@ -46,14 +46,15 @@ double Map::depthInformation(double depth) const {
 }
 
 void Map::count(int point, bool found, const StaticEvidence& evidence) {
-  MapPoint& entry = points_[static_cast<std::size_t>(point)];
-  ++entry.visible;
-  entry.found += found ? 1 : 0;
-  entry.belief.update(evidence, options_.belief);
+  if (MapPoint* entry = points_.find(point)) {
+    ++entry->visible;
+    entry->found += found ? 1 : 0;
+    entry->belief.update(evidence, options_.belief);
+  }
 }
 
 void Map::fuse(const Frame& frame, std::size_t key_point, int point) {
-  MapPoint& entry = points_[static_cast<std::size_t>(point)];
+  MapPoint& entry = *points_.find(point);
   const float depth = frame.points.depth[key_point];
   if (hasDepth(depth) && depth <= options_.max_depth) {
     const double information = depthInformation(depth);
@@ -78,8 +79,7 @@ int Map::create(const Frame& frame, std::size_t key_point) {
   entry.first_key_frame = static_cast<int>(key_frames_.size());
   entry.last_key_frame = entry.first_key_frame;
   entry.belief.log_odds = options_.belief.prior;
-  points_.push_back(std::move(entry));
-  return static_cast<int>(points_.size()) - 1;
+  return points_.add(std::move(entry));
 }
 
 void Map::insertKeyFrame(Frame frame) {
@@ -97,7 +97,7 @@ void Map::insertKeyFrame(Frame frame) {
       point = create(frame, i);
     }
     if (point != kNoMapPoint) {
-      points_[static_cast<std::size_t>(point)].observations.push_back({number, i});
+      points_.find(point)->observations.push_back({number, i});
       ++key_frame.map_points;
     }
   }
@@ -194,29 +194,24 @@ std::vector<int> Map::pointsOf(const std::vector<int>& key_frames) const {
 }
 
 void Map::removePoint(int point) {
-  MapPoint& entry = points_[static_cast<std::size_t>(point)];
-  for (const Observation& seen : entry.observations) {
+  for (const Observation& seen : points_[static_cast<std::size_t>(point)].observations) {
     key_frames_[static_cast<std::size_t>(seen.key_frame)].frame.map_point[seen.key_point] =
         kNoMapPoint;
   }
-  entry.observations = {};
-  entry.removed = true;
+  points_.remove(point);
 }
 
 void Map::cullPoints() {
   constexpr std::size_t kEnoughToJudge = 5;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const MapPoint& point = points_[i];
-    if (point.removed) {
-      continue;
-    }
+  const auto useless = [this](const MapPoint& point) {
     const bool rarely_found = point.visible >= kEnoughToJudge &&
                               static_cast<double>(point.found) <
                                   options_.min_found_share * static_cast<double>(point.visible);
-    if (point.observations.empty() || rarely_found ||
-        point.belief.log_odds < options_.belief.removal) {
-      removePoint(static_cast<int>(i));
-    }
+    return point.observations.empty() || rarely_found ||
+           point.belief.log_odds < options_.belief.removal;
+  };
+  for (const int point : points_.where(useless)) {
+    removePoint(point);
   }
 }
 
@@ -232,7 +227,7 @@ void Map::removeKeyFrame(int key_frame) {
     if (point == kNoMapPoint) {
       continue;
     }
-    std::vector<Observation>& seen = points_[static_cast<std::size_t>(point)].observations;
+    std::vector<Observation>& seen = points_.find(point)->observations;
     seen.erase(std::remove_if(seen.begin(), seen.end(),
                               [&](const Observation& o) { return o.key_frame == key_frame; }),
                seen.end());
@@ -242,6 +237,7 @@ void Map::removeKeyFrame(int key_frame) {
   bare.timestamp = entry.frame.timestamp;
   bare.camera_from_world = entry.frame.camera_from_world;
   entry.frame = std::move(bare);
+  entry.motion.reset();
   entry.removed = true;
 }
 
@@ -287,37 +283,39 @@ Eigen::Isometry3d Map::poseOf(int key_frame) const {
 }
 
 void Map::dropObservation(int point, int key_frame) {
-  MapPoint& entry = points_[static_cast<std::size_t>(point)];
+  MapPoint* entry = points_.find(point);
+  if (entry == nullptr) {
+    return;
+  }
   const auto seen =
-      std::find_if(entry.observations.begin(), entry.observations.end(),
+      std::find_if(entry->observations.begin(), entry->observations.end(),
                    [key_frame](const Observation& o) { return o.key_frame == key_frame; });
-  if (seen != entry.observations.end()) {
+  if (seen != entry->observations.end()) {
     key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point[seen->key_point] = kNoMapPoint;
-    entry.observations.erase(seen);
+    entry->observations.erase(seen);
   }
 }
 
 void Map::fusePoints(int point, int into) {
-  MapPoint& gone = points_[static_cast<std::size_t>(point)];
-  MapPoint& kept = points_[static_cast<std::size_t>(into)];
-  if (gone.removed || kept.removed || point == into) {
+  const MapPoint* gone = points_.find(point);
+  MapPoint* kept = points_.find(into);
+  if (gone == nullptr || kept == nullptr || point == into) {
     return;
   }
-  for (const Observation& seen : gone.observations) {
+  for (const Observation& seen : gone->observations) {
     const bool both =
-        std::any_of(kept.observations.begin(), kept.observations.end(),
+        std::any_of(kept->observations.begin(), kept->observations.end(),
                     [&](const Observation& other) { return other.key_frame == seen.key_frame; });
     key_frames_[static_cast<std::size_t>(seen.key_frame)].frame.map_point[seen.key_point] =
         both ? kNoMapPoint : into;
     if (!both) {
-      kept.observations.push_back(seen);
+      kept->observations.push_back(seen);
     }
   }
-  kept.last_key_frame = std::max(kept.last_key_frame, gone.last_key_frame);
-  kept.visible += gone.visible;
-  kept.found += gone.found;
-  gone.observations = {};
-  gone.removed = true;
+  kept->last_key_frame = std::max(kept->last_key_frame, gone->last_key_frame);
+  kept->visible += gone->visible;
+  kept->found += gone->found;
+  points_.remove(point);
 }
 
 void Map::apply(const MapCorrection& correction) {
@@ -333,16 +331,18 @@ void Map::apply(const MapCorrection& correction) {
     Frame& frame = key_frames_[static_cast<std::size_t>(k)].frame;
     frame.camera_from_world = frame.camera_from_world * old_world_from_new;
   }
-  for (MapPoint& point : points_) {
-    if (!point.removed && point.first_key_frame > latest->first) {
+  points_.forEach([&](MapPoint& point) {
+    if (point.first_key_frame > latest->first) {
       point.position = old_world_from_new.inverse() * point.position;
     }
-  }
+  });
   for (const auto& [key_frame, pose] : correction.key_frames) {
     key_frames_[static_cast<std::size_t>(key_frame)].frame.camera_from_world = pose;
   }
   for (const auto& [point, position] : correction.points) {
-    points_[static_cast<std::size_t>(point)].position = position;
+    if (MapPoint* entry = points_.find(point)) {
+      entry->position = position;
+    }
   }
   for (const auto& [point, key_frame] : correction.outliers) {
     dropObservation(point, key_frame);

@@ -1,50 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <opencv2/core.hpp>
 
 #include <hmcdyn/types.hpp>
 
+#include "slam/mapping/map_point.hpp"
+#include "slam/mapping/point_table.hpp"
 #include "slam/mapping/static_belief.hpp"
 #include "slam/tracking/frame.hpp"
 
 namespace hmcdyn::slam {
 
-/// An ORB descriptor.
-using Descriptor = std::array<std::uint8_t, 32>;
-
-/// A key frame that saw a map point, and the key point that it saw.
-struct Observation {
-  int key_frame = 0;
-  std::size_t key_point = 0;
-};
-
-/// A point of the world, as far as it is believed to stand still.
-struct MapPoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< World (m).
-  double information = 0.0;  ///< Of its depth measurements so far (1/m^2).
-  Descriptor descriptor{};   ///< Of its latest key frame.
-  int octave = 0;            ///< Pyramid level at which that key frame saw it ...
-  double distance = 0.0;     ///< ... from this distance (m).
-  int first_key_frame = 0;
-  int last_key_frame = 0;  ///< Latest key frame that saw it.
-  std::vector<Observation> observations;
-  std::size_t visible = 0;  ///< Frames in which it should have been seen.
-  std::size_t found = 0;    ///< Frames in which it was matched and agreed.
-  StaticBelief belief;      ///< That it stands still.
-  bool removed = false;
-};
-
-/// A frame that the map remembers. Its number is its place in Map::keyFrames().
 /// What the motion before a key frame says of where it stands to the one before it.
 struct KeyFrameMotion {
   int from = 0;                                               ///< The key frame before.
@@ -52,6 +25,7 @@ struct KeyFrameMotion {
   Eigen::Matrix<double, 6, 6> information;  ///< Inverse covariance, as PosePrior has it.
 };
 
+/// A frame that the map remembers. Its number is its place in Map::keyFrames().
 struct KeyFrame {
   Frame frame;                 ///< Without features once it is removed.
   std::size_t map_points = 0;  ///< Key points that had a map point when it was inserted.
@@ -93,7 +67,7 @@ class Map {
 
   const PinholeCamera& camera() const noexcept { return camera_; }
   const MapOptions& options() const noexcept { return options_; }
-  const std::vector<MapPoint>& points() const noexcept { return points_; }
+  const PointTable& points() const noexcept { return points_; }
   const std::vector<KeyFrame>& keyFrames() const noexcept { return key_frames_; }
 
   /// A frame should have seen the point: whether it was found, and what the filter said of it.
@@ -144,7 +118,7 @@ class Map {
 
   PinholeCamera camera_;
   MapOptions options_;
-  std::vector<MapPoint> points_;
+  PointTable points_;
   std::vector<KeyFrame> key_frames_;
 };
 

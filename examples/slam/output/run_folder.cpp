@@ -25,6 +25,7 @@ constexpr const char* kKeyFramesFile = "keyframes.txt";
 constexpr const char* kLoopsFile = "loops.csv";
 constexpr const char* kMapFile = "map.ply";
 constexpr const char* kReportFile = "report.html";
+constexpr std::size_t kReserve = std::size_t{1} << 20U;  // bytes
 
 /// Fixed decimals whatever the locale, and NaN without its sign.
 std::string number(double value, int decimals) {
@@ -68,8 +69,15 @@ void TrajectoryWriter::finish(const std::vector<StampedPose>& poses) {
   for (const StampedPose& pose : poses) {
     lines += tumLine(pose.timestamp, pose.camera_from_world);
   }
-  std::filesystem::copy_file(file_.path(), file_.path().parent_path() / kOnlineTrajectoryFile,
-                             std::filesystem::copy_options::overwrite_existing);
+  const std::filesystem::path online = file_.path().parent_path() / kOnlineTrajectoryFile;
+  std::error_code error;
+  std::filesystem::copy_file(file_.path(), online,
+                             std::filesystem::copy_options::overwrite_existing, error);
+  if (error) {
+    std::error_code ignored;
+    std::filesystem::remove(online, ignored);  // no half copies
+    throw std::runtime_error(online.string() + ": cannot be written: " + error.message());
+  }
   replaceFile(file_.path(), lines);
 }
 
@@ -137,10 +145,11 @@ RunFolder::RunFolder(std::filesystem::path folder) : folder_(std::move(folder)) 
     }
   }
   try {
-    const std::filesystem::path probe = folder_ / ".write_test";
-    AppendFile(probe).append(
-        "\n");  // permissions alone do not tell: disks fill, mounts are read-only
-    std::filesystem::remove(probe);
+    // Permissions alone do not tell: disks fill, mounts are read-only.
+    const std::filesystem::path file = folder_ / ".reserve";
+    reserve_.emplace(file);
+    std::filesystem::remove(file);
+    reserve_->append(std::string(kReserve, '\n'));
   } catch (const std::exception& cause) {
     fail(cause.what());
   }

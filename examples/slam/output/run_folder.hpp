@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,17 +78,21 @@ class KeyPointsWriter {
   AppendFile file_;
 };
 
-/// The folder of a run's results.
+/// The folder of a run's results. Keeps 1 MiB of its disk free for their end: see releaseReserve().
 class RunFolder {
  public:
   /// Creates the folder with its parents where it is missing. A folder that exists is used as it
   /// is: of what it holds, the files below are removed, so that none is left of an earlier
   /// run; other files stay.
   /// @throws std::runtime_error naming the folder and the reason where it cannot be created or
-  /// nothing can be written in it.
+  /// the reserve cannot be written in it.
   explicit RunFolder(std::filesystem::path folder);
 
   const std::filesystem::path& path() const noexcept { return folder_; }
+
+  /// Gives the reserve back to the disk: where that is full, the run's end still finds room for
+  /// the trajectory and the summary.
+  void releaseReserve() { reserve_.reset(); }
 
   TrajectoryWriter trajectory() const;                           ///< trajectory.txt
   TimingsWriter timings(std::vector<std::string> stages) const;  ///< timings.csv
@@ -107,6 +112,8 @@ class RunFolder {
 
  private:
   std::filesystem::path folder_;
+  std::optional<AppendFile>
+      reserve_;  ///< Without a name: it goes with the process, however killed.
 };
 
 }  // namespace hmcdyn::slam

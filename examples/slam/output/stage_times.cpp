@@ -73,24 +73,24 @@ TimeStatistics timeStatistics(std::vector<double> values) {
           0.5 * (values[(n - 1) / 2] + values[n / 2]), values[rank - 1]};
 }
 
-std::vector<StageSummary> summarizeStages(const std::vector<StageTimes>& frames) {
-  StageTimes names;
-  for (const StageTimes& frame : frames) {
-    for (const StageTime& time : frame.stages()) {
-      names.add(time);
+void StageHistory::add(const StageTimes& frame) {
+  for (const StageTime& time : frame.stages()) {
+    auto stage = std::find_if(stages_.begin(), stages_.end(),
+                              [&](const Stage& known) { return known.name == time.stage; });
+    if (stage == stages_.end()) {
+      stage = stages_.insert(stages_.end(), Stage{time.stage, {}, {}});
     }
+    stage->wall_ms.push_back(static_cast<float>(time.wall_ms));
+    stage->cpu_ms.push_back(static_cast<float>(time.cpu_ms));
   }
+}
+
+std::vector<StageSummary> StageHistory::summarize() const {
   std::vector<StageSummary> summaries;
-  for (const StageTime& name : names.stages()) {
-    std::vector<double> wall;
-    std::vector<double> cpu;
-    for (const StageTimes& frame : frames) {
-      if (const StageTime* time = frame.find(name.stage); time != nullptr) {
-        wall.push_back(time->wall_ms);
-        cpu.push_back(time->cpu_ms);
-      }
-    }
-    summaries.push_back({name.stage, wall.size(), timeStatistics(wall), timeStatistics(cpu)});
+  for (const Stage& stage : stages_) {
+    summaries.push_back({stage.name, stage.wall_ms.size(),
+                         timeStatistics({stage.wall_ms.begin(), stage.wall_ms.end()}),
+                         timeStatistics({stage.cpu_ms.begin(), stage.cpu_ms.end()})});
   }
   return summaries;
 }

@@ -79,7 +79,21 @@ struct StageSummary {
   TimeStatistics cpu_ms;
 };
 
-/// By stage, in the order in which the stages first occur.
-std::vector<StageSummary> summarizeStages(const std::vector<StageTimes>& frames);
+/// The stage times of all frames of a run, in 8 bytes a stage and frame.
+class StageHistory {
+ public:
+  void add(const StageTimes& frame);
+
+  /// By stage, in the order in which the stages first occurred.
+  std::vector<StageSummary> summarize() const;
+
+ private:
+  struct Stage {
+    std::string name;
+    std::vector<float> wall_ms;
+    std::vector<float> cpu_ms;
+  };
+  std::vector<Stage> stages_;
+};
 
 }  // namespace hmcdyn::slam

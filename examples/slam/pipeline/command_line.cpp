@@ -289,7 +289,7 @@ void declareOptions(CLI::App& app, SlamOptions& options) {
       "  hmcdyn_slam --dataset rgbd_dataset_freiburg3_walking_xyz --camera tum3 \\\n"
       "    --detector darknet --model yolo-fastest-1.1.cfg --weights yolo-fastest-1.1.weights \\\n"
       "    --filter hmc --output out\n"
-      "Exit codes: 0 done, 1 bad data or nothing tracked, 2 bad usage.");
+      "Exit codes: 0 done, 1 bad data, nothing tracked or a full disk, 2 bad usage.");
   declareInput(app, options);
   declareDetection(app, options);
   declareFilter(app, options);

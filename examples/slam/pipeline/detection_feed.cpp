@@ -9,20 +9,20 @@
 namespace hmcdyn::slam {
 namespace {
 
-std::optional<BoxCarrier> makeCarrier(const SlamOptions& options) {
+std::optional<BoxCarrier> makeCarrier(const SlamOptions& options, const std::string& type) {
   BoxCarrierOptions carrier;
   carrier.max_bridge = options.bridge;
-  if (options.detector.type == "file") {
+  if (type == "file") {
     carrier.duplicate_overlap = 1.0f;  // boxes from a file are taken as they are
   }
   BoxCarrier checked(carrier);
   const bool carries = options.mode == RunMode::kRealtime || options.bridge > 0.0;
-  const bool detects = options.detector.type != "none" && options.detector.type != "motion";
+  const bool detects = type != "none" && type != "motion";
   return detects && carries ? std::optional(std::move(checked)) : std::nullopt;
 }
 
-std::optional<MotionRegions> makeRegions(const SlamOptions& options) {
-  if (options.detector.type != "motion") {
+std::optional<MotionRegions> makeRegions(const SlamOptions& options, const std::string& type) {
+  if (type != "motion") {
     return std::nullopt;
   }
   MotionRegionOptions regions;
@@ -32,13 +32,27 @@ std::optional<MotionRegions> makeRegions(const SlamOptions& options) {
 
 }  // namespace
 
-DetectionFeed::DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report)
+DetectionFeed::DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report,
+                             std::unique_ptr<ObjectDetector> own)
+    : DetectionFeed(options, choose(options, std::move(own)), std::move(rectifier),
+                    std::move(report)) {}
+
+DetectionFeed::DetectionFeed(const SlamOptions& options, TypedDetector detector,
+                             Rectifier rectifier, Report report)
     : realtime_(options.mode == RunMode::kRealtime),
-      boxes_are_raw_(options.detector.type == "file"),
+      boxes_are_raw_(detector.type == "file"),
       rectifier_(std::move(rectifier)),
-      thread_(makeDetector(options.detector), std::move(report)),
-      regions_(makeRegions(options)),
-      carrier_(makeCarrier(options)) {}
+      thread_(std::move(detector.detector), std::move(report)),
+      regions_(makeRegions(options, detector.type)),
+      carrier_(makeCarrier(options, detector.type)) {}
+
+DetectionFeed::TypedDetector DetectionFeed::choose(const SlamOptions& options,
+                                                   std::unique_ptr<ObjectDetector> own) {
+  if (own) {
+    return {"own", std::move(own)};
+  }
+  return {options.detector.type, makeDetector(options.detector)};
+}
 
 std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> boxes) const {
   if (boxes_are_raw_) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "slam/dataset/frame.hpp"
 #include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detection_thread.hpp"
+#include "slam/detection/detector.hpp"
 #include "slam/detection/motion_regions.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
@@ -37,8 +39,11 @@ struct FrameBoxes {
 /// are bridged in both (SlamOptions::bridge).
 class DetectionFeed {
  public:
+  /// @param own a detector in place of the one that the options name; it sees the undistorted
+  /// image.
   /// @throws std::invalid_argument or std::runtime_error where the detector cannot be used.
-  DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report);
+  DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report,
+                std::unique_ptr<ObjectDetector> own = nullptr);
 
   /// Offline: asks for a frame, at most one ahead of the frame whose boxes are taken.
   void ask(const PreparedFrame& frame);
@@ -50,6 +55,15 @@ class DetectionFeed {
   const std::string& detectorName() const noexcept { return thread_.detectorName(); }
 
  private:
+  struct TypedDetector {
+    std::string type;  ///< As DetectorOptions::type, or "own".
+    std::unique_ptr<ObjectDetector> detector;
+  };
+
+  DetectionFeed(const SlamOptions& options, TypedDetector detector, Rectifier rectifier,
+                Report report);
+  static TypedDetector choose(const SlamOptions& options, std::unique_ptr<ObjectDetector> own);
+
   std::vector<DetectionBox> rectified(std::vector<DetectionBox> boxes) const;
 
   bool realtime_;

@@ -43,7 +43,9 @@ int run(int argc, char** argv) {
     const hmcdyn::slam::StopRequest stop;  // Ctrl-C finishes what there is
     const nlohmann::json summary = hmcdyn::slam::runSlam(options, [&] { return stop.requested(); });
     printSummary(summary, options.output);
-    return summary.at("counts").at("frames_tracked") > 0 ? EXIT_SUCCESS : kBadData;
+    const nlohmann::json& counts = summary.at("counts");
+    const bool written = counts.at("write_failures").empty();
+    return written && counts.at("frames_tracked") > 0 ? EXIT_SUCCESS : kBadData;
   } catch (const std::invalid_argument& error) {
     spdlog::error("{}", error.what());
     return kBadUsage;

@@ -70,6 +70,9 @@ class FrameFeed {
     return frame;
   }
 
+  /// Taken from the source, and not yet handed out.
+  std::size_t framesAhead() const noexcept { return ahead_ ? 1 : 0; }
+
  private:
   std::optional<PreparedFrame> takeAndAsk() {
     std::optional<RgbdFrame> raw = source_.next();
@@ -102,67 +105,126 @@ FrameOutcome trackFrame(const PreparedFrame& frame, FrameBoxes boxes, Pipeline& 
   return outcome;
 }
 
-}  // namespace
-
-nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop) {
-  prepareOptions(options);
-  const CameraCalibration calibration = loadCamera(options.camera);
-  const std::unique_ptr<FrameSource> source = makeSource(options, calibration);
-  const Rectifier rectifier(calibration);
-  DetectionFeed detections(options, rectifier, warn);
-  Pipeline pipeline(options, calibration, cornerMask(rectifier));
-  std::optional<DenseMapper> dense;
-  if (options.dense_map) {
-    dense.emplace();
-  }
-  RunWriter writer(options);
-  FrameFeed feed(*source, rectifier, detections, options.mode == RunMode::kOffline);
-
-  RunCounts counts;
-  std::vector<StageTimes> times;
-  {
-    support::ProgressBar progress("frames", source->expectedFrames().value_or(0), !options.quiet);
-    while (!(stop && stop())) {
-      const std::optional<PreparedFrame> frame = feed.next();
-      if (!frame) {
-        break;
-      }
-      FrameBoxes boxes = detections.boxesOf(*frame);
-      counts.boxes_bridged += boxes.bridged;
-      const FrameOutcome outcome = trackFrame(*frame, std::move(boxes), pipeline);
-      writer.write(outcome, pipeline.map(), pipeline.loops());
-      if (dense && outcome.tracking.new_key_frame) {
-        dense->add(pipeline.map().keyFrames().size() - 1, outcome);
-      }
-      counts.add(outcome.filtered);
-      counts.add(outcome.image.timestamp, outcome.tracking);
-      times.push_back(outcome.times);
-      progress.update(source->counts().taken_up, fmt::format("{} tracked", counts.frames_tracked));
+/// Tries to write results: what fails is reported and remembered, and is no end of the others.
+class WriteAttempts {
+ public:
+  template <class Write>
+  bool attempt(const Write& write) {
+    try {
+      write();
+      return true;
+    } catch (const std::runtime_error& error) {
+      spdlog::error("{}", error.what());
+      failures_.emplace_back(error.what());
+      return false;
     }
   }
-  counts.stopped = stop && stop();
-  counts.source = source->counts();
-  counts.detections = detections.counts();
-  if (!source->failure().empty()) {
-    warn(source->failure());
+  const std::vector<std::string>& failures() const noexcept { return failures_; }
+
+ private:
+  std::vector<std::string> failures_;
+};
+
+/// All parts of a run.
+struct Run {
+  Run(const SlamOptions& run_options, const CameraCalibration& calibration,
+      std::unique_ptr<ObjectDetector> detector)
+      : options(run_options),
+        source(makeSource(options, calibration)),
+        rectifier(calibration),
+        detections(options, rectifier, warn, std::move(detector)),
+        pipeline(options, calibration, cornerMask(rectifier)),
+        writer(options) {
+    if (options.dense_map) {
+      dense.emplace();
+    }
   }
 
-  pipeline.finish();
-  writer.finish(pipeline.trajectory(), pipeline.map());
-  if (dense) {
-    const FusionResult map = dense->fuse(pipeline.map());
-    counts.map_points = map.cloud.position.size();
-    writer.writeMap(map.cloud);
+  const SlamOptions& options;
+  std::unique_ptr<FrameSource> source;
+  Rectifier rectifier;
+  DetectionFeed detections;
+  Pipeline pipeline;
+  std::optional<DenseMapper> dense;
+  RunWriter writer;
+  WriteAttempts writing;
+  RunCounts counts;
+  StageHistory times;
+};
+
+/// False where the frame's results could not be written.
+bool doFrame(Run& run, const PreparedFrame& frame) {
+  FrameBoxes boxes = run.detections.boxesOf(frame);
+  run.counts.boxes_bridged += boxes.bridged;
+  const FrameOutcome outcome = trackFrame(frame, std::move(boxes), run.pipeline);
+  run.counts.add(outcome.filtered);
+  run.counts.add(outcome.image.timestamp, outcome.tracking);
+  run.times.add(outcome.times);
+  if (run.dense && outcome.tracking.new_key_frame) {
+    run.dense->add(run.pipeline.map().keyFrames().size() - 1, outcome);
   }
-  for (const std::string& warning : filterWarnings(counts, options)) {
+  return run.writing.attempt(
+      [&] { run.writer.write(outcome, run.pipeline.map(), run.pipeline.loops()); });
+}
+
+void doFrames(Run& run, const std::function<bool()>& stop) {
+  FrameFeed feed(*run.source, run.rectifier, run.detections, run.options.mode == RunMode::kOffline);
+  support::ProgressBar progress("frames", run.source->expectedFrames().value_or(0),
+                                !run.options.quiet);
+  bool goes_on = true;
+  while (goes_on) {
+    run.counts.stopped = stop && stop();
+    const std::optional<PreparedFrame> frame = run.counts.stopped ? std::nullopt : feed.next();
+    goes_on = frame && doFrame(run, *frame);
+    progress.update(run.source->counts().taken_up,
+                    fmt::format("{} tracked", run.counts.frames_tracked));
+  }
+  run.counts.source = run.source->counts();
+  run.counts.source.taken_up -= feed.framesAhead();
+  run.counts.detections = run.detections.counts();
+  if (!run.source->failure().empty()) {
+    warn(run.source->failure());
+  }
+}
+
+nlohmann::json finish(Run& run) {
+  const SlamOptions& options = run.options;
+  run.pipeline.finish();
+  run.writer.releaseReserve();
+  run.writing.attempt([&] { run.writer.finish(run.pipeline.trajectory(), run.pipeline.map()); });
+  if (run.dense) {
+    const FusionResult map = run.dense->fuse(run.pipeline.map());
+    run.counts.map_points = map.cloud.position.size();
+    run.writing.attempt([&] { run.writer.writeMap(map.cloud); });
+  }
+  for (const std::string& warning : filterWarnings(run.counts, options)) {
     warn(warning);
   }
   const std::filesystem::path groundtruth = groundtruthFile(options);
-  nlohmann::json summary = summarizeRun(options, {source->name(), detections.detectorName()},
-                                        counts, pipeline, times, groundtruth);
-  writer.writeSummary(summary);
-  writer.writeReport(summary, groundtruth, options);
+  run.counts.write_failures = run.writing.failures();
+  nlohmann::json summary =
+      summarizeRun(options, {run.source->name(), run.detections.detectorName()}, run.counts,
+                   run.pipeline, run.times, groundtruth);
+  run.writing.attempt([&] { run.writer.writeSummary(summary); });
+  if (!run.writing.attempt([&] { run.writer.writeReport(summary, groundtruth, options); })) {
+    summary["counts"]["write_failures"] = run.writing.failures();
+    run.writing.attempt([&] { run.writer.writeSummary(summary); });
+  }
+  summary["counts"]["write_failures"] = run.writing.failures();
   return summary;
+}
+
+}  // namespace
+
+nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop,
+                       std::unique_ptr<ObjectDetector> detector) {
+  prepareOptions(options);
+  if (detector) {
+    options.detector.type = "own";
+  }
+  Run run(options, loadCamera(options.camera), std::move(detector));
+  doFrames(run, stop);
+  return finish(run);
 }
 
 }  // namespace hmcdyn::slam

@@ -2,20 +2,26 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "slam/detection/detector.hpp"
 #include "slam/pipeline/options.hpp"
 
 namespace hmcdyn::slam {
 
 /// Runs the system over a folder and writes its results as they come, so that a run that is killed
-/// keeps what it had. A frame that cannot be read is reported, counted and skipped.
+/// keeps what it had. A frame that cannot be read is reported, counted and skipped. Where a result
+/// cannot be written, because the disk is full, say, the frames end there; the run finishes what it
+/// has, writes what it can, and "write_failures" in the summary names file and reason.
 /// @param stop is asked before each frame; true ends the run as if the frames had ended.
+/// @param detector in place of the one that the options name.
 /// @return summary.json's content.
 /// @throws std::invalid_argument for options that cannot be.
 /// @throws std::runtime_error naming the file where data set, model, calibration or output folder
 /// cannot be used.
-nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop = {});
+nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop = {},
+                       std::unique_ptr<ObjectDetector> detector = nullptr);
 
 }  // namespace hmcdyn::slam

@@ -30,6 +30,9 @@ class RunWriter {
   /// @throws std::runtime_error naming the file where one cannot be written.
   void write(const FrameOutcome& outcome, const Map& map, LoopClosing& loops);
 
+  /// Makes room for what follows where the disk is full.
+  void releaseReserve() { folder_.releaseReserve(); }
+
   /// The poses as they are at the end, in place of those of the moment.
   void finish(const std::vector<StampedPose>& poses, const Map& map);
 

@@ -106,18 +106,16 @@ double trackingCpuMs(const std::vector<StageSummary>& stages) {
 
 nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
                             const RunCounts& counts, const Pipeline& pipeline,
-                            const std::vector<StageTimes>& times,
-                            const std::filesystem::path& groundtruth) {
-  const std::vector<StageSummary> stages = summarizeStages(times);
+                            const StageHistory& times, const std::filesystem::path& groundtruth) {
+  const std::vector<StageSummary> stages = times.summarize();
   nlohmann::json summary;
   summary["source"] = names.source;
   summary["counts"] = toJson(counts);
   summary["counts"]["key_frames_kept"] =
       std::count_if(pipeline.map().keyFrames().begin(), pipeline.map().keyFrames().end(),
                     [](const KeyFrame& key_frame) { return !key_frame.removed; });
-  summary["counts"]["map_points"] =
-      std::count_if(pipeline.map().points().begin(), pipeline.map().points().end(),
-                    [](const MapPoint& point) { return !point.removed; });
+  summary["counts"]["map_points"] = pipeline.map().points().held();
+  summary["counts"]["map_points_made"] = pipeline.map().points().size();
   summary["counts"]["local_adjustments"] = pipeline.mapper().adjustments();
   summary["counts"]["loops_closed"] = pipeline.loops().loopsClosed();
   summary["stages"] = toJson(stages);
@@ -196,7 +194,8 @@ nlohmann::json toJson(const RunCounts& counts) {
             {"failed", counts.detections.failed}}},
           {"boxes_bridged", counts.boxes_bridged},
           {"dense_map_points", counts.map_points},
-          {"stopped_by_signal", counts.stopped}};
+          {"stopped_by_signal", counts.stopped},
+          {"write_failures", counts.write_failures}};
 }
 
 nlohmann::json libraryVersions() {

@@ -37,6 +37,7 @@ struct RunCounts {
   std::size_t boxes_bridged = 0;                   ///< Boxes that the detector missed.
   std::size_t map_points = 0;                      ///< Of the dense map.
   bool stopped = false;                            ///< By a signal.
+  std::vector<std::string> write_failures;         ///< File and reason; the first ended the run.
   SourceCounts source;
   DetectionCounts detections;
 
@@ -57,8 +58,7 @@ struct RunNames {
 /// summary.json. @param groundtruth empty = none.
 nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
                             const RunCounts& counts, const Pipeline& pipeline,
-                            const std::vector<StageTimes>& times,
-                            const std::filesystem::path& groundtruth);
+                            const StageHistory& times, const std::filesystem::path& groundtruth);
 
 /// The options as JSON, complete enough to repeat the run.
 nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name);

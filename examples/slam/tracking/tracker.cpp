@@ -186,6 +186,43 @@ void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search)
   }
 }
 
+bool Tracker::liesOn(const Frame& frame, const PointMatch& match) const {
+  const Eigen::Vector3d in_camera =
+      frame.camera_from_world * map_.points()[static_cast<std::size_t>(match.map_point)].position;
+  const Eigen::Vector2d pixel = camera_.project(in_camera);
+  const double dx = pixel.x() - frame.points.u[match.key_point];
+  const double dy = pixel.y() - frame.points.v[match.key_point];
+  constexpr double kPixelSigmas = 2.0;
+  constexpr double kDepthSigmas = 3.0;
+  const double reach = kPixelSigmas * frame.sigma[match.key_point];
+  const float depth = frame.points.depth[match.key_point];
+  const double noise = options_.map.depth_noise_floor +
+                       options_.map.depth_noise_quadratic * in_camera.z() * in_camera.z();
+  return dx * dx + dy * dy <= reach * reach &&
+         (!hasDepth(depth) || std::abs(depth - in_camera.z()) <= kDepthSigmas * noise);
+}
+
+void Tracker::tieToForgottenPoints(Frame& frame, const KeyPointGrid& grid) const {
+  std::vector<int> forgotten;
+  const int now = static_cast<int>(map_.keyFrames().size());
+  const std::unordered_set<int> tied(frame.map_point.begin(), frame.map_point.end());
+  for (const int point : map_.pointsOf(map_.nearestKeyFrames(frame.camera_from_world))) {
+    const int last_seen = map_.points()[static_cast<std::size_t>(point)].last_key_frame;
+    if (now - last_seen > options_.forgotten_after && tied.count(point) == 0) {
+      forgotten.push_back(point);
+    }
+  }
+  const ProjectionSearch search =
+      matchByProjection(frame, grid, map_, forgotten, frame.camera_from_world, camera_,
+                        options_.refined_radius, options_.matcher);
+  for (const PointMatch& match : search.matches) {
+    int& map_point = frame.map_point[match.key_point];
+    if (map_point == kNoMapPoint && liesOn(frame, match)) {
+      map_point = match.map_point;
+    }
+  }
+}
+
 Tracker::Estimate Tracker::findAgain(const Frame& frame, const KeyPointGrid& grid,
                                      const std::vector<int>& candidates,
                                      const Relocalize& by_place) const {
@@ -258,6 +295,7 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   lost_ = false;
   if (needsKeyFrame(frame)) {
     map_.cull();
+    tieToForgottenPoints(frame, grid);
     map_.insertKeyFrame(frame);
     result.new_key_frame = true;
   }

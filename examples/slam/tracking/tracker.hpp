@@ -43,7 +43,10 @@ struct TrackerOptions {
   float wide_radius = 40.0f;        ///< The same after a first failure (px).
   float refined_radius = 5.0f;      ///< The same around the refined pose (px).
   std::size_t min_inliers = 20;     ///< Fewer, and the frame is lost.
-  std::uint32_t seed = 1;           ///< Of the random draws in relocalisation.
+  /// A key frame looks for points at its place that none of so many key frames before it saw: the
+  /// local map has lost them, and they would be made again at each visit, without end.
+  int forgotten_after = 20;
+  std::uint32_t seed = 1;  ///< Of the random draws in relocalisation.
 };
 
 /// Why a frame has no pose.
@@ -102,6 +105,8 @@ class Tracker {
   bool needsKeyFrame(const Frame& frame) const;
   TrackingResult initialize(Frame frame);
   TrackingResult lose();
+  bool liesOn(const Frame& frame, const PointMatch& match) const;
+  void tieToForgottenPoints(Frame& frame, const KeyPointGrid& grid) const;
   void countSightings(const Frame& frame, const ProjectionSearch& search);
 
   PinholeCamera camera_;

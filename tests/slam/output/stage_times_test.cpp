@@ -84,13 +84,18 @@ TEST(StageTimes, WorkThatThrowsIsNotNoted) {
   EXPECT_TRUE(times.stages().empty());
 }
 
-TEST(SummarizeStages, CountsOnlyTheFramesThatRanAStage) {
+TEST(StageHistory, CountsOnlyTheFramesThatRanAStage) {
   std::vector<StageTimes> frames(3);
   frames[0].add({"track", 1.0, 0.5});
   frames[1].add({"track", 3.0, 1.5});
   frames[1].add({"map", 10.0, 8.0});
   frames[2].add({"track", 2.0, 1.0});
-  const std::vector<StageSummary> summaries = summarizeStages(frames);
+  StageHistory history;
+  EXPECT_TRUE(history.summarize().empty());
+  for (const StageTimes& frame : frames) {
+    history.add(frame);
+  }
+  const std::vector<StageSummary> summaries = history.summarize();
   ASSERT_EQ(summaries.size(), 2U);
   EXPECT_EQ(summaries[0].stage, "track");
   EXPECT_EQ(summaries[0].frames, 3U);
@@ -100,7 +105,6 @@ TEST(SummarizeStages, CountsOnlyTheFramesThatRanAStage) {
   EXPECT_EQ(summaries[1].stage, "map");
   EXPECT_EQ(summaries[1].frames, 1U);
   EXPECT_DOUBLE_EQ(summaries[1].wall_ms.mean, 10.0);
-  EXPECT_TRUE(summarizeStages({}).empty());
 }
 
 }  // namespace

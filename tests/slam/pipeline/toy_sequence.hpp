@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -37,7 +38,13 @@ struct ToySequence {
   int frames = 8;
   double step = 0.01;  ///< Camera's way from frame to frame (m).
   bool with_depth = true;
+  std::function<double(int)> position;  ///< Camera's place at a frame (m), in place of the steps.
+  /// What goes wrong at a frame: changes the colour (CV_8UC3) and depth image (CV_16U) as it likes.
+  std::function<void(int, cv::Mat&, cv::Mat&)> spoil;
 };
+
+/// The time stamp of a frame (s), as it stands in the lists.
+inline std::string toyStamp(int frame) { return fmt::format("{:.6f}", 1000.0 + frame / 30.0); }
 
 inline void writeToySequence(const std::filesystem::path& folder, const ToySequence& toy = {}) {
   constexpr float kFocal = 300.0f;
@@ -50,7 +57,7 @@ inline void writeToySequence(const std::filesystem::path& folder, const ToySeque
   std::ofstream(folder / "calibration.yaml")
       << "fx: 300\nfy: 300\ncx: 159.5\ncy: 119.5\nwidth: 320\nheight: 240\ndepth_factor: 5000\n";
   for (int k = 0; k < toy.frames; ++k) {
-    const double x = toy.step * k;
+    const double x = toy.position ? toy.position(k) : toy.step * k;
     cv::Mat image(240, 320, CV_8U);
     cv::Mat range(240, 320, CV_16U);
     for (int slab = 0; slab < 4; ++slab) {
@@ -62,9 +69,12 @@ inline void writeToySequence(const std::filesystem::path& folder, const ToySeque
       moved(rows).copyTo(image(rows));
       range(rows).setTo(toy.with_depth ? z * 5000.0f : 0.0f);
     }
-    const std::string stamp = fmt::format("{:.6f}", 1000.0 + k / 30.0);
+    const std::string stamp = toyStamp(k);
     cv::Mat color;
     cv::cvtColor(image, color, cv::COLOR_GRAY2BGR);
+    if (toy.spoil) {
+      toy.spoil(k, color, range);
+    }
     cv::imwrite((folder / "rgb" / (stamp + ".png")).string(), color);
     cv::imwrite((folder / "depth" / (stamp + ".png")).string(), range);
     rgb << fmt::format("{0} rgb/{0}.png\n", stamp);

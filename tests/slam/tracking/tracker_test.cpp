@@ -63,6 +63,34 @@ TEST(Tracker, PointsOfWeightZeroDoNotMoveTheCamera) {
   EXPECT_LT(distanceBetween(result.camera_from_world, movedBy(0.01, 0.0)), 0.002);
 }
 
+/// Points of the map after a camera has panned away and back, several times, over 300 points of a
+/// room; every frame is a key frame, and the local map holds four of them.
+std::size_t pointsAfterPanning(int forgotten_after) {
+  const Room room(9);
+  TrackerOptions options;
+  options.key_frames.max_interval = 1;
+  options.map.local_key_frames = 4;
+  options.forgotten_after = forgotten_after;
+  Tracker tracker(kCamera, options);
+  constexpr int kHalfPan = 30;  // frames
+  for (int k = 0; k < 6 * kHalfPan; ++k) {
+    const int step = k % (2 * kHalfPan);
+    const double turn = 0.025 * (step < kHalfPan ? step : 2 * kHalfPan - step);
+    const TrackingResult result =
+        tracker.track(room.see(static_cast<std::size_t>(k), movedBy(0.0, turn)));
+    EXPECT_EQ(result.failure, TrackingFailure::kNone) << "frame " << k;
+    EXPECT_LT(distanceBetween(result.camera_from_world, movedBy(0.0, turn)), 0.01) << "frame " << k;
+  }
+  return tracker.map().points().held();
+}
+
+TEST(Tracker, APlaceThatIsSeenAgainIsNotMappedAgain) {
+  constexpr int kAsTheLocalMap = 4;  // key frames
+  EXPECT_LE(pointsAfterPanning(kAsTheLocalMap), 300U);
+  constexpr int kNever = 1000;
+  EXPECT_GT(pointsAfterPanning(kNever), 400U) << "the test does not tell";
+}
+
 TEST(Map, PeopleAndUncertainPointsStayOut) {
   const Room room(7);
   Frame frame = room.see(0, movedBy(0.0, 0.0));
