@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include <hmcdyn/pose_refinement.hpp>
+#include <hmcdyn/weights.hpp>
 
 namespace hmcdyn::integration {
 namespace {

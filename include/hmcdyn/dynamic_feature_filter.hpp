@@ -26,12 +26,13 @@ enum class DistanceKind : std::uint8_t {
   kLarger,     ///< The larger of both.
 };
 
+/// The options of every step, and how much optical flow is spent.
 struct DynamicFeatureFilterOptions {
-  OpticalFlowOptions flow;
-  MotionModelOptions motion;
-  DistanceKind distance = DistanceKind::kTwoView;
-  EgoMotionOptions ego_motion;
-  FilterStageOptions stage;
+  OpticalFlowOptions flow;                         ///< Step 1.
+  MotionModelOptions motion;                       ///< Step 2.
+  DistanceKind distance = DistanceKind::kTwoView;  ///< Which distance step 3 measures.
+  EgoMotionOptions ego_motion;                     ///< Step 3, for the ego-motion distance.
+  FilterStageOptions stage;                        ///< Steps 4 to 7.
 
   /// Optical flow is the dearest step: only the points that need a distance get one. Those in a box
   /// or within this margin of one (px) do ...
@@ -45,9 +46,9 @@ struct DynamicFeatureFilterOptions {
 
   /// Forms beliefs where the frame's depth image is given; not for the peers' rules.
   bool use_belief = true;
-  SurfaceDepthOptions surface;
-  MotionBeliefOptions belief;
-  BeliefVerdictOptions belief_verdict;
+  SurfaceDepthOptions surface;          ///< On which surface a point lies.
+  MotionBeliefOptions belief;           ///< How the points vote.
+  BeliefVerdictOptions belief_verdict;  ///< What the votes decide.
 
   /// A model explains its frame pair well enough to speak of motion when the median distance of its
   /// matches stays below this (px); distances to other frames are not used.
@@ -87,6 +88,7 @@ struct EarlierFrameReport {
   bool used = false;           ///< Its distances count.
 };
 
+/// What the filter found out about a frame of N key points.
 struct DynamicFeatureFilterResult {
   std::vector<float> distance;              ///< N distances (px), NaN = none.
   FilterStageResult stage;                  ///< Labels, weights, clusters; boxes and frame.
@@ -96,9 +98,9 @@ struct DynamicFeatureFilterResult {
 
 /// Memory that filterDynamicFeatures reuses from frame to frame.
 struct DynamicFeatureFilterWorkspace {
-  FilterStageWorkspace stage;
-  MotionBeliefWorkspace belief;
-  std::vector<float> distance;
+  FilterStageWorkspace stage;    ///< Of steps 4 to 7.
+  MotionBeliefWorkspace belief;  ///< Of the votes.
+  std::vector<float> distance;   ///< Of one earlier frame (px).
 };
 
 /// Tracks the key points into every earlier frame, estimates the camera's motion, measures each
