@@ -44,15 +44,15 @@ function links(line, out, parts, text, link) {
     line = substr(line, RSTART + RLENGTH)
     parts = index(text, "](")
     link = target(substr(text, parts + 2, length(text) - parts - 2))
-    if (text ~ /^!/) out = out "<img src=\"" link "\" alt=\"" substr(text, 3, parts - 3) "\">"
+    if (text ~ /^!/) out = out "<img src=\"" link "\" alt=\"" substr(text, 3, parts - 3) "\" style=\"max-width: 40em; width: 100%\">"
     else if (link ~ /^files\//) out = out "<a href=\"" link "\">" substr(text, 2, parts - 2) "</a>"
-    else out = out substr(text, 1, parts) "(" link ")"
+    else {
+      gsub(/`/, "", text)  # would show as such within a reference
+      out = out substr(text, 1, index(text, "](")) "(" link ")"
+    }
   }
   return out line
 }
-
-# A link may go on in the next line: hold a line back that ends within its text.
-function emit(line) { if (!list) print line; else links(line) }
 
 FNR == 1 {
   document = FILENAME

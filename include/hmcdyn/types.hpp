@@ -13,6 +13,8 @@
 
 #include <hmcdyn/span.hpp>
 
+/// Which key points of a frame lie on moving things: one header a step, in the order in which a
+/// frame's data flows (hmcdyn.hpp names them in that order).
 namespace hmcdyn {
 
 /// What a quantity is where it was not measured: an epipolar distance without a match, for one.
