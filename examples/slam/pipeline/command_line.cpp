@@ -117,6 +117,12 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
   app.add_option("--boxes", detector.boxes,
                  "Boxes for --detector file; a line: timestamp class x_min y_min x_max y_max score")
       ->group("Detection");
+  app.add_option(
+         "--input-size", detector.input_size,
+         "Side of the network's input (px), a multiple of 32: an ONNX model's is fixed by its "
+         "export; 0 = 640 for yolo, as in the .cfg for darknet")
+      ->capture_default_str()
+      ->group("Detection");
   app.add_option("--score-threshold", detector.score_threshold, "Lowest score of a box, 0..1")
       ->capture_default_str()
       ->group("Detection");
