@@ -58,7 +58,7 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, SourceKind>{{"folder", SourceKind::kFolder},
                                                                     {"live", SourceKind::kLive}})
-              .description(""))
+              .description("{folder,live}"))
       ->default_str("folder")
       ->group("Input");
   app.add_option("--live-backend", options.live.backend, "Driver of the live camera")
@@ -74,7 +74,7 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, RunMode>{{"offline", RunMode::kOffline},
                                                                  {"realtime", RunMode::kRealtime}})
-              .description(""))
+              .description("{offline,realtime}"))
       ->default_str("offline")
       ->group("Input");
   app.add_option("--speed", options.speed, "realtime: so many times as fast as it was recorded")
@@ -150,7 +150,8 @@ void declareFilter(CLI::App& app, SlamOptions& options) {
                  "hmc (the paper), box (drop whole boxes; RS ablation), epipolar (one threshold; "
                  "DF ablation), two_threshold (SG-SLAM), chi2 (OVD-SLAM), depth_ransac "
                  "(YOLO-SLAM), none")
-      ->transform(CLI::CheckedTransformer(filterNames()).description(""))
+      ->transform(CLI::CheckedTransformer(filterNames())
+                      .description("{hmc,box,epipolar,two_threshold,chi2,depth_ransac,none}"))
       ->default_str(toString(stage.rule))
       ->group("Filter");
   app.add_flag("!--no-soft-weights", motion.soft_weights,
