@@ -4,12 +4,37 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <memory>
+#include <sstream>
 #include <utility>
 
 #include <hmcdyn/version.hpp>
 
 namespace hmcdyn::support {
 namespace {
+
+/// CLI11's, but two blanks at least between an option and its text, as help2man and our manual
+/// pages want it, and no "{false}" behind a flag that switches something off.
+class HelpFormatter final : public CLI::Formatter {
+ public:
+  explicit HelpFormatter(std::size_t width) { column_width(width); }
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    const std::string opts = make_option_opts(option);
+    std::string name = make_option_name(option, is_positional);
+    name = name.substr(0, name.find('{'));
+    std::ostringstream text;
+    CLI::detail::format_help(text, name + opts + " ", make_option_desc(option), get_column_width());
+    return text.str();
+  }
+};
+
+void useHelpFormatter(CLI::App& app) {
+  app.formatter(std::make_shared<HelpFormatter>(app.get_formatter()->get_column_width()));
+  for (CLI::App* const command : app.get_subcommands({})) {
+    useHelpFormatter(*command);
+  }
+}
 
 /// Letters to insert, leave out, replace or swap with their neighbour (optimal string alignment;
 /// Damerau 1964).
@@ -121,6 +146,7 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
     app.set_version_flag("--version", std::string("hmcdyn ") + HMCDYN_VERSION_STRING,
                          "Print the version and exit");
   }
+  useHelpFormatter(app);
   try {
     app.parse(argc, argv);
     if (check) {
