@@ -4,6 +4,12 @@
 find_package(Doxygen 1.9 QUIET)
 find_program(HMCDYN_AWK awk)
 
+if(HMCDYN_BUILD_TESTS)
+  add_test(NAME docs.parameters COMMAND "${PROJECT_SOURCE_DIR}/tests/docs/parameters_test.sh"
+                                        "${PROJECT_SOURCE_DIR}")
+  set_tests_properties(docs.parameters PROPERTIES LABELS docs)
+endif()
+
 if(NOT DOXYGEN_FOUND OR NOT HMCDYN_AWK)
   message(STATUS "hmcdyn: no target docs, since Doxygen (>= 1.9) or awk was not found; "
                  "on Debian: apt-get install doxygen")
