@@ -11,12 +11,13 @@ if(HMCDYN_BUILD_TESTS)
 endif()
 
 if(NOT DOXYGEN_FOUND OR NOT HMCDYN_AWK)
-  message(STATUS "hmcdyn: no target docs, since Doxygen (>= 1.9) or awk was not found; "
+  message(STATUS "hmcdyn: the target docs builds nothing, since Doxygen (>= 1.9) or awk was not found; "
                  "on Debian: apt-get install doxygen")
   # The target is there and says why it does nothing.
   add_custom_target(
     docs COMMAND ${CMAKE_COMMAND} -E echo "docs: Doxygen (>= 1.9) or awk was not found"
-    COMMAND ${CMAKE_COMMAND} -E false)
+    COMMAND ${CMAKE_COMMAND} -E false
+    VERBATIM)
   if(HMCDYN_BUILD_TESTS)
     add_test(NAME docs.html COMMAND ${CMAKE_COMMAND} -E echo
                                     "skipped: Doxygen (>= 1.9) or awk was not found")
