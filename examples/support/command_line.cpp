@@ -23,9 +23,14 @@ class HelpFormatter final : public CLI::Formatter {
     const std::string opts = make_option_opts(option);
     std::string name = make_option_name(option, is_positional);
     name = name.substr(0, name.find('{'));
-    std::ostringstream text;
-    CLI::detail::format_help(text, name + opts + " ", make_option_desc(option), get_column_width());
-    return text.str();
+    name += opts;
+    std::ostringstream stream;
+    CLI::detail::format_help(stream, name + " ", make_option_desc(option), get_column_width());
+    std::string text = stream.str();
+    if (const std::size_t blank = 2 + name.size(); text.compare(blank, 2, " \n") == 0) {
+      text.erase(blank, 1);  // the text went to the next line
+    }
+    return text;
   }
 };
 

@@ -106,5 +106,26 @@ TEST(ParseCommandLine, EndsWithBadUsageAfterACheckThatFails) {
             kBadUsage);
 }
 
+TEST(ParseCommandLine, LeavesTwoBlanksBetweenAnOptionAndItsText) {
+  // Given names that end two columns before the text, one column before it, and beyond it
+  CLI::App app("", "program");
+  bool flag = true;
+  app.get_formatter()->column_width(12);
+  app.add_flag("--six234", "Text");
+  app.add_flag("--seven23", "Text");
+  app.add_flag("--longer-than-that", "Text");
+  app.add_flag("!--no", flag, "Text");
+  const char* const argv[] = {"program"};
+  ASSERT_EQ(parseCommandLine(app, 1, argv), std::nullopt);
+  // When
+  const std::string help = app.help();
+  // Then
+  for (const char* const expected :
+       {"\n  --six234  Text\n", "\n  --seven23\n            Text\n",
+        "\n  --longer-than-that\n            Text\n", "\n  --no      Text\n"}) {
+    EXPECT_NE(help.find(expected), std::string::npos) << expected << help;
+  }
+}
+
 }  // namespace
 }  // namespace hmcdyn::support
