@@ -63,8 +63,11 @@ struct Clip {
     input.earlier = earlier;
     input.depth = {depth.ptr<float>(), depth.cols, depth.rows, depth.step1()};
   }
-  Clip(const Clip&) = delete;
+  ~Clip() = default;
+  Clip(const Clip&) = delete;  // `input` views the other members
   Clip& operator=(const Clip&) = delete;
+  Clip(Clip&&) = delete;
+  Clip& operator=(Clip&&) = delete;
 
   DynamicFeatureFilterResult byBoxes(const std::vector<DetectionBox>& boxes) const {
     DynamicFeatureFilterInput frame = input;
