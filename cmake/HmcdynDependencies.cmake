@@ -23,4 +23,8 @@ if(HMCDYN_WITH_OPTIMIZATION)
   if(Ceres_VERSION VERSION_LESS 1.14)
     message(FATAL_ERROR "hmcdyn: Ceres ${Ceres_VERSION} is older than 1.14")
   endif()
+  # Conan's files for Ceres give the target, but not Ceres' own variable.
+  if(NOT CERES_LIBRARIES AND TARGET Ceres::ceres)
+    set(CERES_LIBRARIES Ceres::ceres)
+  endif()
 endif()

@@ -57,7 +57,8 @@ set(HMCDYN_COMPONENTS core)
 if(HMCDYN_WITH_VISION)
   add_library(
     hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/flow_selection.cpp
-                  src/fundamental.cpp src/label_image.cpp src/dynamic_feature_filter.cpp)
+                  src/fundamental.cpp src/label_image.cpp src/frame_regions.cpp
+                  src/dynamic_feature_filter.cpp)
   target_link_libraries(
     hmcdyn_vision
     PUBLIC hmcdyn_core opencv_core

@@ -4,7 +4,9 @@
 
 set(CPACK_PACKAGE_NAME hmcdyn)
 set(CPACK_PACKAGE_VENDOR "The hmcdyn authors")
-set(CPACK_PACKAGE_CONTACT "The hmcdyn authors <hmcdyn@localhost>")
+set(HMCDYN_PACKAGE_MAINTAINER "The hmcdyn authors <hmcdyn@localhost>"
+    CACHE STRING "Maintainer of the Debian packages: Name <address>; the default reaches nobody")
+set(CPACK_PACKAGE_CONTACT "${HMCDYN_PACKAGE_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_STRIP_FILES ON)

@@ -47,6 +47,9 @@ chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euxc '
   /tmp/by_pkg_config
 
   install /packages/hmcdyn-tools_*.deb
+  dpkg --contents /packages/hmcdyn-tools_*.deb >/tmp/contents
+  grep -q "/man1/hmcdyn_slam.1$" /tmp/contents
+  grep -q "/bash-completion/completions/hmcdyn_slam$" /tmp/contents
   rm -rf /tmp/crowd /tmp/run
   hmcdyn_synthesize --scene crowd --frames 40 --quiet --output /tmp/crowd
   hmcdyn_slam --dataset /tmp/crowd --camera /tmp/crowd/calibration.yaml --detector file \

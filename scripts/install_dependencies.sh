@@ -11,7 +11,7 @@ Installs the packages that hmcdyn needs to be built and tested (Debian, Ubuntu).
 all are installed. Needs root or sudo; without either it says what to install and fails.
 
   --check   only list what is missing; exit code 1 when something is
-  --ci      also what .ci/run needs: clang-format, clang-tidy, and Chromium to open the report in
+  --ci      also what .ci/run needs: clang-format, clang-tidy, Doxygen, and Chromium to open the report in
   --bench   also the peers that the benchmarks measure against: Open3D and PCL
   --fuzz    also clang and its fuzzer, for scripts/fuzz.sh
   --help    this text
@@ -31,7 +31,7 @@ only_check=false
 for argument in "$@"; do
   case "$argument" in
     --check) only_check=true ;;
-    --ci) packages+=(clang-format clang-tidy chromium) ;;
+    --ci) packages+=(clang-format clang-tidy chromium doxygen) ;;
     --fuzz) packages+=(clang libclang-rt-14-dev) ;;
     --bench) packages+=(libopen3d-dev libpcl-dev python3) ;;
     --help | -h) usage && exit 0 ;;

@@ -12,6 +12,7 @@
 #include <hmcdyn/dynamic_feature_filter.hpp>
 
 #include "flow_selection.hpp"
+#include "frame_regions.hpp"
 
 namespace hmcdyn {
 namespace {
@@ -96,13 +97,6 @@ void keepLarger(const std::vector<float>& candidate, std::vector<float>& distanc
   }
 }
 
-bool inAnyBox(Span<const DetectionBox> boxes, float u, float v, float margin) {
-  return std::any_of(boxes.begin(), boxes.end(), [&](const DetectionBox& box) {
-    return u >= box.x_min - margin && u <= box.x_max + margin && v >= box.y_min - margin &&
-           v <= box.y_max + margin;
-  });
-}
-
 /// Whether distances are wanted: without a box, only what moved before can be dynamic.
 bool distancesWanted(const DynamicFeatureFilterInput& input,
                      const DynamicFeatureFilterOptions& options) {
@@ -181,9 +175,10 @@ EarlierFrameReport compareWith(const EarlierFrame& frame, const FlowMatches& gue
   return report;
 }
 
-/// Steps 4 to 7 on the chosen points. The others in a dynamic box are unmatched, until the chosen
-/// ones vote on them.
+/// Steps 4 to 7 on the chosen points. The others in a dynamic region are unmatched, until the
+/// chosen ones vote on them.
 FilterStageResult stageOfSelection(const internal::FlowSelection& selection,
+                                   const internal::FrameRegions& regions,
                                    const DynamicFeatureFilterInput& input,
                                    const DynamicFeatureFilterOptions& options,
                                    const std::vector<float>& distance,
@@ -192,8 +187,10 @@ FilterStageResult stageOfSelection(const internal::FlowSelection& selection,
   for (const std::size_t i : selection.source) {
     workspace.distance.push_back(distance[i]);
   }
-  const FilterStageResult& chosen = filterKeyPoints(selection.points.view(), workspace.distance,
-                                                    input.boxes, options.stage, workspace.stage);
+  const FilterStageResult& chosen =
+      filterKeyPoints(selection.points.view(), workspace.distance, regions.boxes,
+                      internal::membershipOf(regions, selection.source, selection.points.view()),
+                      options.stage, workspace.stage);
 
   const std::size_t n = input.points.size();
   FilterStageResult all;
@@ -208,14 +205,12 @@ FilterStageResult stageOfSelection(const internal::FlowSelection& selection,
     if (!chosen.boxes[b].verdict.is_dynamic) {
       continue;
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      if (input.boxes[b].contains(input.points.u[i], input.points.v[i])) {
-        all.frame.points_in_dynamic_boxes += all.label[i] == PointLabel::kStatic ? 1 : 0;
-        all.label[i] = PointLabel::kUnmatched;
-        all.weight[i] = std::min(
-            all.weight[i],
-            keptPointWeight(input.points.depth[i], chosen.boxes[b].anchor, options.stage.weights));
-      }
+    for (const std::uint32_t i : regions.membership.pointsIn(b)) {
+      all.frame.points_in_dynamic_boxes += all.label[i] == PointLabel::kStatic ? 1 : 0;
+      all.label[i] = PointLabel::kUnmatched;
+      all.weight[i] = std::min(
+          all.weight[i],
+          keptPointWeight(input.points.depth[i], chosen.boxes[b].anchor, options.stage.weights));
     }
   }
   for (std::size_t k = 0; k < selection.source.size(); ++k) {
@@ -233,33 +228,33 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
                                                  DynamicFeatureFilterWorkspace& workspace) {
   checkInput(input, options);
   checkKeyPoints(input.points);
-  const bool forms_beliefs = formsBeliefs(input, options);
+  const internal::FrameRegions regions = internal::regionsOf(input);
+  DynamicFeatureFilterInput bounded = input;
+  bounded.boxes = regions.boxes;  // of a mask: where to look for motion, not what belongs to it
+  const bool forms_beliefs = formsBeliefs(bounded, options);
   DynamicFeatureFilterResult result;
-  result.distance.assign(input.points.size(), kNaN);
+  result.distance.assign(bounded.points.size(), kNaN);
   internal::FlowSelection selection;
-  if (distancesWanted(input, options)) {
-    selection = internal::selectForFlow(input.points, input.boxes, imageSize(*input.pyramid),
+  if (distancesWanted(bounded, options)) {
+    selection = internal::selectForFlow(bounded.points, bounded.boxes, imageSize(*bounded.pyramid),
                                         budgetOf(options, forms_beliefs));
-    for (std::size_t k = 0; k < input.earlier.size(); ++k) {
-      const EarlierFrame& frame = input.earlier[k];
+    for (std::size_t k = 0; k < bounded.earlier.size(); ++k) {
+      const EarlierFrame& frame = bounded.earlier[k];
       const FlowMatches guess =
           k == 0 ? FlowMatches{}
-                 : prolonged(selection, frame, input.earlier[k - 1], result.earlier[k - 1].flow);
+                 : prolonged(selection, frame, bounded.earlier[k - 1], result.earlier[k - 1].flow);
       result.earlier.push_back(
-          compareWith(frame, guess, selection, input, options, workspace, result.distance));
+          compareWith(frame, guess, selection, bounded, options, workspace, result.distance));
     }
   }
   if (!forms_beliefs) {
-    result.stage =
-        filterKeyPoints(input.points, result.distance, input.boxes, options.stage, workspace.stage);
+    result.stage = filterKeyPoints(bounded.points, result.distance, regions.boxes,
+                                   regions.membership, options.stage, workspace.stage);
     return result;
   }
-  result.stage = stageOfSelection(selection, input, options, result.distance, workspace);
-  std::vector<std::uint8_t> in_box(input.points.size());
-  for (std::size_t i = 0; i < in_box.size(); ++i) {
-    in_box[i] = inAnyBox(input.boxes, input.points.u[i], input.points.v[i], 0.0f) ? 1 : 0;
-  }
-  return judgeByBelief(std::move(result), input, in_box, options, workspace);
+  result.stage = stageOfSelection(selection, regions, bounded, options, result.distance, workspace);
+  return judgeByBelief(std::move(result), bounded,
+                       internal::inRegion(regions, bounded.points.size()), options, workspace);
 }
 
 DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,
@@ -289,22 +284,48 @@ DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,
   return result;
 }
 
+namespace {
+
+/// @param input without images.
+DynamicFeatureFilterResult filterTwoImages(const cv::Mat& earlier_gray, const cv::Mat& current_gray,
+                                           DynamicFeatureFilterInput input,
+                                           const DynamicFeatureFilterOptions& options) {
+  const FlowPyramid earlier = buildFlowPyramid(earlier_gray, options.flow);
+  const FlowPyramid current = buildFlowPyramid(current_gray, options.flow);
+  EarlierFrame frame;
+  frame.pyramid = &earlier;
+  input.pyramid = &current;
+  input.earlier = Span<const EarlierFrame>(&frame, 1);
+  DynamicFeatureFilterWorkspace workspace;
+  return filterDynamicFeatures(input, options, workspace);
+}
+
+}  // namespace
+
 DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,
                                                  const cv::Mat& current_gray,
                                                  const KeyPointsView& points,
                                                  Span<const DetectionBox> boxes,
                                                  const DynamicFeatureFilterOptions& options) {
-  const FlowPyramid earlier = buildFlowPyramid(earlier_gray, options.flow);
-  const FlowPyramid current = buildFlowPyramid(current_gray, options.flow);
-  EarlierFrame frame;
-  frame.pyramid = &earlier;
   DynamicFeatureFilterInput input;
-  input.pyramid = &current;
   input.points = points;
   input.boxes = boxes;
-  input.earlier = Span<const EarlierFrame>(&frame, 1);
-  DynamicFeatureFilterWorkspace workspace;
-  return filterDynamicFeatures(input, options, workspace);
+  return filterTwoImages(earlier_gray, current_gray, input, options);
+}
+
+DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,
+                                                 const cv::Mat& current_gray,
+                                                 const KeyPointsView& points, const cv::Mat& labels,
+                                                 Span<const LabelRegion> regions,
+                                                 const DynamicFeatureFilterOptions& options) {
+  if (labels.empty()) {
+    throw std::invalid_argument("filterDynamicFeatures: labels is empty; expected a label image");
+  }
+  DynamicFeatureFilterInput input;
+  input.points = points;
+  input.labels = labels;
+  input.regions = regions;
+  return filterTwoImages(earlier_gray, current_gray, input, options);
 }
 
 }  // namespace hmcdyn

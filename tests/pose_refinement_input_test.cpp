@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What refinePose() refuses, the gate, and the hard weights.
+// What refinePose() refuses.
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -146,43 +146,6 @@ TEST(PoseRefinementTermination, HasWordsForEachReason) {
   EXPECT_STREQ(toString(PoseRefinementTermination::kTooFewPoints), "too few points");
   EXPECT_STREQ(toString(PoseRefinementTermination::kTooFewInliers), "too few inliers");
   EXPECT_STREQ(toString(PoseRefinementTermination::kNumericalFailure), "numerical failure");
-}
-
-TEST(UseSoftWeights, OpensAboveTheGateAndNotAtIt) {
-  EXPECT_FALSE(useSoftWeights(3, 5));
-  EXPECT_FALSE(useSoftWeights(600, 1000));
-  EXPECT_TRUE(useSoftWeights(601, 1000));
-  EXPECT_FALSE(useSoftWeights(0, 1000));
-  EXPECT_TRUE(useSoftWeights(1000, 1000));
-  EXPECT_TRUE(useSoftWeights(1, 1000, 0.0));
-  EXPECT_FALSE(useSoftWeights(1000, 1000, 1.0));
-}
-
-TEST(UseSoftWeights, IsExactAtTheGateForEveryNumberOfPoints) {
-  for (std::size_t fifths = 1; fifths <= 2000; ++fifths) {
-    ASSERT_FALSE(useSoftWeights(3 * fifths, 5 * fifths)) << fifths;
-    ASSERT_TRUE(useSoftWeights(3 * fifths + 1, 5 * fifths)) << fifths;
-  }
-}
-
-TEST(UseSoftWeights, NoPointsNeedNone) { EXPECT_FALSE(useSoftWeights(0, 0)); }
-
-TEST(UseSoftWeights, RefusesMorePointsInBoxesThanPointsAndOddGates) {
-  EXPECT_THROW(useSoftWeights(6, 5), std::invalid_argument);
-  EXPECT_THROW(useSoftWeights(3, 5, -0.1), std::invalid_argument);
-  EXPECT_THROW(useSoftWeights(3, 5, 1.1), std::invalid_argument);
-  EXPECT_THROW(useSoftWeights(3, 5, kNaN), std::invalid_argument);
-}
-
-TEST(HardWeights, KeepZeroAndRaiseTheRest) {
-  const std::vector<float> soft{0.0f, 1e-30f, 0.3f, 1.0f};
-  EXPECT_EQ(hardWeights(soft), (std::vector<float>{0.0f, 1.0f, 1.0f, 1.0f}));
-  EXPECT_TRUE(hardWeights({}).empty());
-}
-
-TEST(HardWeights, RefuseWhatIsNoWeight) {
-  EXPECT_THROW(hardWeights(std::vector<float>{0.5f, -0.1f}), std::invalid_argument);
-  EXPECT_THROW(hardWeights(std::vector<float>{kNaN}), std::invalid_argument);
 }
 
 }  // namespace

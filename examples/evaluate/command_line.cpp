@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "support/command_line.hpp"
+
 namespace hmcdyn::evaluate {
 namespace {
 
@@ -88,7 +90,7 @@ void addDeltaOptions(CLI::App& app, Arguments& arguments) {
                  "RPE: unit of --delta along the estimate: s (time), m (path), rad or deg\n"
                  "(angle turned), frames. Default: s")
       ->type_name("UNIT")
-      ->transform(CLI::CheckedTransformer(kUnits).description(""));
+      ->transform(CLI::CheckedTransformer(kUnits).description("{s,m,rad,deg,frames}"));
 }
 
 void addPlotOption(CLI::App& app, Arguments& arguments) {
@@ -164,11 +166,8 @@ std::variant<Arguments, int> parseCommandLine(int argc, const char* const* argv)
   addFrameOptions(*summary, raw.arguments);
   addPlotOption(*summary, raw.arguments);
 
-  try {
-    app.parse(argc, argv);
-    finish(raw);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+  if (const auto code = support::parseCommandLine(app, argc, argv, [&raw] { finish(raw); })) {
+    return *code;
   }
   raw.arguments.command = ate->parsed()   ? Command::kAte
                           : rpe->parsed() ? Command::kRpe

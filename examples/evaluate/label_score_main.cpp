@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluate/label_score.hpp"
+#include "support/command_line.hpp"
 
 namespace {
 
@@ -92,13 +93,13 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  constexpr int kBadUsage = 2;
   Arguments arguments;
   CLI::App app(
       "Scores the labels in keypoints.csv (hmcdyn_slam --write-keypoints) against the masks of a\n"
       "rendered sequence (hmcdyn_synthesize): precision, recall and F1 of 'dynamic', and the "
       "share\n"
-      "of static points inside boxes that were kept.");
+      "of static points inside boxes that were kept.",
+      "hmcdyn_label_score");
   app.footer(
       "Scored are the points whose class is beyond doubt. Left out, and counted: 'border', points "
       "within\nthe margin of another class in the mask, and 'standing', points on people who stand "
@@ -117,13 +118,12 @@ int main(int argc, char** argv) {
          "ring\", 3 px at the pyramid level of the point, rounded up; without a column "
          "'size' in the file 3 px)")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--skip-frames", arguments.options.skip_frames, "First frames that are left out")
+  app.add_option("--skip-frames", arguments.options.skip_frames,
+                 "So many first frames are left out")
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON instead of a table");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadUsage;
+  if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {
+    return *code;
   }
   try {
     run(arguments);

@@ -12,6 +12,7 @@
 #include "evaluate/map_score.hpp"
 #include "evaluate/point_cloud_file.hpp"
 #include "evaluate/pose_alignment.hpp"
+#include "support/command_line.hpp"
 
 namespace {
 
@@ -65,13 +66,13 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  constexpr int kBadUsage = 2;
   Arguments arguments;
   MapScoreOptions& options = arguments.options;
   CLI::App app(
       "Scores a map (PLY) against a rendered sequence (hmcdyn_synthesize): the share of its "
       "points\n"
-      "that lie on no static surface (ghosts), and how much of the surfaces it holds.");
+      "that lie on no static surface (ghosts), and how much of the surfaces it holds.",
+      "hmcdyn_map_score");
   app.footer(
       "Example: hmcdyn_map_score walking_xyz out/map.ply --trajectory out/trajectory.txt\n"
       "Exit code: 0 done, 1 a file is missing or malformed, 2 wrong usage.");
@@ -98,10 +99,8 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON instead of two lines");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadUsage;
+  if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {
+    return *code;
   }
   try {
     run(arguments);

@@ -12,6 +12,7 @@
 #include "evaluate/paper_results.hpp"
 #include "evaluate/result_tables.hpp"
 #include "evaluate/run_summary.hpp"
+#include "support/command_line.hpp"
 
 namespace {
 
@@ -69,10 +70,9 @@ void writeTables(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  constexpr int kBadUsage = 2;
   Arguments arguments;
-  CLI::App app(
-      "Writes the tables of the HMC-SLAM paper from the summaries of runs of hmcdyn_slam.");
+  CLI::App app("Writes the tables of the HMC-SLAM paper from the summaries of runs of hmcdyn_slam.",
+               "hmcdyn_tables");
   app.footer(
       "Runs lie in RUNS/SEQUENCE/VARIANT/RUN/summary.json; variants: hmc, rs, df, opw, none, "
       "chi2,\n"
@@ -91,13 +91,13 @@ int main(int argc, char** argv) {
   runs->needs(paper)->needs(output)->excludes(check);
   app.add_flag("--rendered", arguments.rendered,
                "Say that the sequences are rendered, not the paper's");
-  try {
-    app.parse(argc, argv);
+  const auto code = hmcdyn::support::parseCommandLine(app, argc, argv, [&] {
     if (check->count() + runs->count() == 0) {
       throw CLI::RequiredError("--runs or --check");
     }
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadUsage;
+  });
+  if (code) {
+    return *code;
   }
   try {
     if (check->count() > 0) {

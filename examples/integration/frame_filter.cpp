@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include <hmcdyn/pose_refinement.hpp>
+#include <hmcdyn/weights.hpp>
 
 namespace hmcdyn::integration {
 namespace {
@@ -41,21 +41,6 @@ KeyPoints pointsOf(const FrameInput& frame) {
 DepthImageView viewOf(const cv::Mat& depth) {
   return depth.empty() ? DepthImageView{}
                        : DepthImageView{depth.ptr<float>(), depth.cols, depth.rows, depth.step1()};
-}
-
-/// Steps 4 to 7 and the votes, for points that belong to regions. `details` has the distances.
-DynamicFeatureFilterResult filterRegions(DynamicFeatureFilterResult details,
-                                         const DynamicFeatureFilterInput& input,
-                                         const std::vector<int>& region,
-                                         const DynamicFeatureFilterOptions& options,
-                                         DynamicFeatureFilterWorkspace& workspace) {
-  const BoxMembership membership = assignToRegions(region, input.boxes.size());
-  details.stage = filterKeyPoints(input.points, details.distance, input.boxes, membership,
-                                  options.stage, workspace.stage);
-  std::vector<std::uint8_t> in_region(region.size());
-  std::transform(region.begin(), region.end(), in_region.begin(),
-                 [](int r) { return static_cast<std::uint8_t>(r != kNoRegion ? 1 : 0); });
-  return judgeByBelief(std::move(details), input, in_region, options, workspace);
 }
 
 }  // namespace
@@ -119,12 +104,10 @@ FrameFilter::Prepared FrameFilter::prepare(const FrameInput& frame) const {
   return prepared;
 }
 
-DynamicFeatureFilterInput FrameFilter::inputOf(const Prepared& prepared, const cv::Mat& depth,
-                                               Span<const DetectionBox> boxes) {
+DynamicFeatureFilterInput FrameFilter::inputOf(const Prepared& prepared, const cv::Mat& depth) {
   DynamicFeatureFilterInput input;
   input.pyramid = &prepared.current.pyramid;
   input.points = prepared.points.view();
-  input.boxes = boxes;
   input.earlier = prepared.earlier;
   input.depth = viewOf(depth);
   input.memory = prepared.memory;
@@ -158,8 +141,9 @@ FrameFilterResult FrameFilter::finish(DynamicFeatureFilterResult details, Rememb
 
 FrameFilterResult FrameFilter::filter(const FrameInput& frame, Span<const DetectionBox> boxes) {
   Prepared prepared = prepare(frame);
-  DynamicFeatureFilterResult details =
-      filterDynamicFeatures(inputOf(prepared, frame.depth, boxes), options_.filter, workspace_);
+  DynamicFeatureFilterInput input = inputOf(prepared, frame.depth);
+  input.boxes = boxes;
+  DynamicFeatureFilterResult details = filterDynamicFeatures(input, options_.filter, workspace_);
   return finish(std::move(details), std::move(prepared.current));
 }
 
@@ -170,16 +154,10 @@ FrameFilterResult FrameFilter::filter(const FrameInput& frame, const RegionMask&
                                 " x " + std::to_string(frame.gray.rows) + " px");
   }
   Prepared prepared = prepare(frame);
-  const std::vector<int> region =
-      regionsOfPoints(prepared.points.view(), mask.labels, mask.regions);
-  const std::vector<DetectionBox> boxes = boundingBoxes(mask.labels, mask.regions);
-  const DynamicFeatureFilterInput input = inputOf(prepared, frame.depth, boxes);
-
-  // The library's one call knows boxes only: of it, the distances; then its steps, on the regions.
-  DynamicFeatureFilterOptions distances_only = options_.filter;
-  distances_only.use_belief = false;
-  DynamicFeatureFilterResult details = filterDynamicFeatures(input, distances_only, workspace_);
-  details = filterRegions(std::move(details), input, region, options_.filter, workspace_);
+  DynamicFeatureFilterInput input = inputOf(prepared, frame.depth);
+  input.labels = mask.labels;
+  input.regions = mask.regions;
+  DynamicFeatureFilterResult details = filterDynamicFeatures(input, options_.filter, workspace_);
   return finish(std::move(details), std::move(prepared.current));
 }
 

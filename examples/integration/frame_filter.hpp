@@ -62,7 +62,7 @@ class FrameFilter {
   FrameFilterResult filter(const FrameInput& frame, Span<const DetectionBox> boxes);
 
   /// The same by a mask. A point belongs to the region at its pixel; the background in a person's
-  /// box is none of it. Every point of a region gets its own optical flow.
+  /// box is none of it.
   /// @throws std::invalid_argument as above.
   FrameFilterResult filter(const FrameInput& frame, const RegionMask& mask);
 
@@ -85,8 +85,7 @@ class FrameFilter {
 
   void checkFrame(const FrameInput& frame) const;
   Prepared prepare(const FrameInput& frame) const;
-  static DynamicFeatureFilterInput inputOf(const Prepared& prepared, const cv::Mat& depth,
-                                           Span<const DetectionBox> boxes);
+  static DynamicFeatureFilterInput inputOf(const Prepared& prepared, const cv::Mat& depth);
   FrameFilterResult finish(DynamicFeatureFilterResult details, Remembered current);
 
   FrameFilterOptions options_;  ///< Baselines in rising order.

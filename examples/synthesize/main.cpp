@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 #include <spdlog/spdlog.h>
 
+#include "support/command_line.hpp"
 #include "support/progress_bar.hpp"
 #include "synthesize/scene_catalog.hpp"
 #include "synthesize/sequence.hpp"
@@ -42,14 +43,15 @@ void addOptions(CLI::App& app, SequenceOptions& options, std::string& size, bool
                                                  {"none", NoiseModel::kNone}};
   app.add_option("-s,--scene", options.scene, "Scene to render; --list shows them")
       ->capture_default_str();
-  app.add_option("-o,--output", options.output, "Folder to write; made if missing");
+  app.add_option("-o,--output", options.output,
+                 "Folder to write; made if missing; not needed with --list");
   app.add_option("-n,--frames", options.frames, "Number of frames at 30 Hz")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Same seed, same bytes")->capture_default_str();
   app.add_option("--noise", options.noise,
                  "kinect: depth noise and holes, RGB noise, motion blur, exposure; none: exact")
-      ->transform(CLI::CheckedTransformer(models, CLI::ignore_case))
+      ->transform(CLI::CheckedTransformer(models, CLI::ignore_case).description("{kinect,none}"))
       ->default_str("kinect");
   app.add_option("--size", size, "Image size, WIDTHxHEIGHT (px)")->capture_default_str();
   app.add_option("--trajectory", options.trajectory,
@@ -82,18 +84,14 @@ int run(int argc, char** argv) {
   CLI::App app(kDescription, "hmcdyn_synthesize");
   addOptions(app, options, size, quiet);
   app.add_flag("--list", list, "Print the scenes and end");
-  try {
-    app.parse(argc, argv);
+  const auto code = hmcdyn::support::parseCommandLine(app, argc, argv, [&] {
     parseSize(size, options);
     if (!list && options.output.empty()) {
       throw CLI::RequiredError("--output");
     }
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    if (code != 0) {
-      std::fputs("\nRun with --help for the options and examples.\n", stderr);
-    }
-    return code;
+  });
+  if (code) {
+    return *code;
   }
   if (list) {
     for (const auto& scene : hmcdyn::synthesize::sceneCatalog()) {

@@ -16,6 +16,7 @@
 
 namespace hmcdyn {
 
+/// Thresholds of the paper's box test (section III-A).
 struct BoxDynamismOptions {
   float distance_threshold = 1.0f;         ///< A point is dynamic beyond this distance (px).
   float person_distance_threshold = 0.9f;  ///< The same for a point in a person's box (px).
@@ -45,7 +46,10 @@ struct BoxMembership {
   std::vector<std::size_t> offsets;    ///< Boxes + 1 elements.
   std::vector<std::uint32_t> indices;  ///< Key points, box by box.
 
+  /// Number of boxes.
   std::size_t boxes() const noexcept { return offsets.empty() ? 0 : offsets.size() - 1; }
+  /// Positions of the key points in a box, rising.
+  /// @param box below boxes().
   Span<const std::uint32_t> pointsIn(std::size_t box) const noexcept {
     return {indices.data() + offsets[box], offsets[box + 1] - offsets[box]};
   }
@@ -83,6 +87,7 @@ inline void appendOnes(std::uint64_t bits, std::uint32_t first,
 
 }  // namespace detail
 
+/// Which of the N key points lie in which box, borders included.
 /// @param reuse a result whose memory is taken over.
 /// @throws std::invalid_argument when the points' arrays differ in size.
 inline BoxMembership assignToBoxes(const KeyPointsView& points, Span<const DetectionBox> boxes,
@@ -154,8 +159,9 @@ struct BoxVerdict {
   bool is_dynamic = false;   ///< dynamic > dynamic_ratio * points.
 };
 
+/// What the test says about a frame.
 struct BoxDynamism {
-  std::vector<BoxVerdict> boxes;
+  std::vector<BoxVerdict> boxes;  ///< One a detection box.
   /// N distance thresholds (px). A point in several boxes takes the strictest; outside all boxes
   /// distance_threshold.
   std::vector<float> threshold;

@@ -16,6 +16,7 @@
 
 namespace hmcdyn {
 
+/// When a cluster of a dynamic box counts as moving (section III-C).
 struct ClusterFilterOptions {
   /// The strongest dynamic cluster has at least this many points.
   int min_cluster_size = 5;
@@ -74,15 +75,17 @@ inline const char* toString(ClusterVerdict verdict) noexcept {
   return "invalid";
 }
 
+/// One cluster in numbers, and what was decided about it.
 struct ClusterSummary {
-  std::size_t points = 0;
-  float mean_distance = 0.0f;  ///< (px)
-  float mean_depth = 0.0f;     ///< (m)
-  float min_depth = 0.0f;      ///< (m)
-  float max_depth = 0.0f;      ///< (m)
-  ClusterVerdict verdict = ClusterVerdict::kStatic;
+  std::size_t points = 0;                            ///< Points in the cluster.
+  float mean_distance = 0.0f;                        ///< Of its points (px).
+  float mean_depth = 0.0f;                           ///< Of its points (m).
+  float min_depth = 0.0f;                            ///< The nearest point's (m).
+  float max_depth = 0.0f;                            ///< The farthest point's (m).
+  ClusterVerdict verdict = ClusterVerdict::kStatic;  ///< Why it is dynamic, if it is.
 };
 
+/// What was decided about the N points of one box.
 struct ClusterFilterResult {
   std::vector<ClusterSummary> clusters;  ///< By cluster label.
   std::vector<std::uint8_t> is_dynamic;  ///< N flags.

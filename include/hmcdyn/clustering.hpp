@@ -57,10 +57,10 @@ inline void checkOptions(const ClusteringOptions& options) {
 
 /// Memory that densityClusters and clusterBox reuse from call to call, with the last result.
 struct ClusteringWorkspace {
-  Clustering result;
-  detail::PlanarPoints points;
-  detail::BitSetWorkspace bit_sets;
-  detail::GridWorkspace grid;
+  Clustering result;                 ///< Of the last call.
+  detail::PlanarPoints points;       ///< Scaled coordinates.
+  detail::BitSetWorkspace bit_sets;  ///< For few points.
+  detail::GridWorkspace grid;        ///< For many points.
 };
 
 namespace detail {

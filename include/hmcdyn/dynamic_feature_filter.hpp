@@ -14,6 +14,7 @@
 #include <hmcdyn/fundamental.hpp>
 #include <hmcdyn/motion_belief.hpp>
 #include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/regions.hpp>
 #include <hmcdyn/surface_depth.hpp>
 #include <hmcdyn/types.hpp>
 
@@ -26,12 +27,13 @@ enum class DistanceKind : std::uint8_t {
   kLarger,     ///< The larger of both.
 };
 
+/// The options of every step, and how much optical flow is spent.
 struct DynamicFeatureFilterOptions {
-  OpticalFlowOptions flow;
-  MotionModelOptions motion;
-  DistanceKind distance = DistanceKind::kTwoView;
-  EgoMotionOptions ego_motion;
-  FilterStageOptions stage;
+  OpticalFlowOptions flow;                         ///< Step 1.
+  MotionModelOptions motion;                       ///< Step 2.
+  DistanceKind distance = DistanceKind::kTwoView;  ///< Which distance step 3 measures.
+  EgoMotionOptions ego_motion;                     ///< Step 3, for the ego-motion distance.
+  FilterStageOptions stage;                        ///< Steps 4 to 7.
 
   /// Optical flow is the dearest step: only the points that need a distance get one. Those in a box
   /// or within this margin of one (px) do ...
@@ -45,9 +47,9 @@ struct DynamicFeatureFilterOptions {
 
   /// Forms beliefs where the frame's depth image is given; not for the peers' rules.
   bool use_belief = true;
-  SurfaceDepthOptions surface;
-  MotionBeliefOptions belief;
-  BeliefVerdictOptions belief_verdict;
+  SurfaceDepthOptions surface;          ///< On which surface a point lies.
+  MotionBeliefOptions belief;           ///< How the points vote.
+  BeliefVerdictOptions belief_verdict;  ///< What the votes decide.
 
   /// A model explains its frame pair well enough to speak of motion when the median distance of its
   /// matches stays below this (px); distances to other frames are not used.
@@ -78,6 +80,12 @@ struct DynamicFeatureFilterInput {
   DepthImageView depth = {};             ///< Of the current frame (m); empty = no beliefs.
   /// `belief` of the result for earlier[0]; null = none.
   const MotionBelief* memory = nullptr;
+  /// Masks in place of boxes, which must be empty then: a label a pixel (CV_8UC1, CV_16UC1 or
+  /// CV_32SC1), of the image's size. Empty = boxes.
+  cv::Mat labels = {};
+  /// Which labels may move; each takes the place of a box, in this order. Labels without a region
+  /// are background.
+  Span<const LabelRegion> regions = {};
 };
 
 /// What one earlier frame contributed.
@@ -87,6 +95,7 @@ struct EarlierFrameReport {
   bool used = false;           ///< Its distances count.
 };
 
+/// What the filter found out about a frame of N key points.
 struct DynamicFeatureFilterResult {
   std::vector<float> distance;              ///< N distances (px), NaN = none.
   FilterStageResult stage;                  ///< Labels, weights, clusters; boxes and frame.
@@ -96,9 +105,9 @@ struct DynamicFeatureFilterResult {
 
 /// Memory that filterDynamicFeatures reuses from frame to frame.
 struct DynamicFeatureFilterWorkspace {
-  FilterStageWorkspace stage;
-  MotionBeliefWorkspace belief;
-  std::vector<float> distance;
+  FilterStageWorkspace stage;    ///< Of steps 4 to 7.
+  MotionBeliefWorkspace belief;  ///< Of the votes.
+  std::vector<float> distance;   ///< Of one earlier frame (px).
 };
 
 /// Tracks the key points into every earlier frame, estimates the camera's motion, measures each
@@ -110,14 +119,20 @@ struct DynamicFeatureFilterWorkspace {
 ///
 /// Without an earlier frame, or where no model holds, no point has a distance: all are static, and
 /// the reports say why.
-/// @throws std::invalid_argument for a null pyramid, unequal arrays, images of unequal size, a
+///
+/// With masks a point belongs to the region at its nearest pixel: the background in a person's box
+/// is none of it and stays static. Only where flow is spent, and which matches speak for the
+/// camera's motion, is decided by the boxes around the regions, since a mask may end short of a
+/// silhouette. A mask that fills its box gives the result of the box.
+/// @throws std::invalid_argument for a null pyramid, unequal arrays, images of unequal size, boxes
+/// and labels at once, regions without labels, labels of another type, a
 /// missing motion, depth or camera where the ego-motion distance is asked for, a memory of unequal
 /// arrays, or a bad option.
 DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput& input,
                                                  const DynamicFeatureFilterOptions& options,
                                                  DynamicFeatureFilterWorkspace& workspace);
 
-/// The last step alone, for a result whose regions are not boxes (regions.hpp): the points vote on
+/// The last step alone, for a result whose regions are neither boxes nor a mask: the points vote on
 /// each other. A result without beliefs (use_belief, another rule, no depth image) stays as it is.
 /// @param result of filterDynamicFeatures() for this input; its `stage` may have been made anew.
 /// @param in_region N flags: the point belongs to something that may move.
@@ -134,6 +149,16 @@ DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,
                                                  const cv::Mat& current_gray,
                                                  const KeyPointsView& points,
                                                  Span<const DetectionBox> boxes,
+                                                 const DynamicFeatureFilterOptions& options = {});
+
+/// The same with masks (regions.hpp, label_image.hpp).
+/// @param labels CV_8UC1, CV_16UC1 or CV_32SC1, of the images' size. @param regions which labels
+/// may move.
+/// @throws std::invalid_argument as above, and for empty labels.
+DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,
+                                                 const cv::Mat& current_gray,
+                                                 const KeyPointsView& points, const cv::Mat& labels,
+                                                 Span<const LabelRegion> regions,
                                                  const DynamicFeatureFilterOptions& options = {});
 
 }  // namespace hmcdyn

@@ -17,6 +17,7 @@
 
 namespace hmcdyn {
 
+/// How depth counts in egoMotionDistances.
 struct EgoMotionOptions {
   /// Virtual stereo baseline times focal length (px m). It turns depths into disparities, so that a
   /// motion along the ray counts in pixels too, and by as much as the sensor's noise allows: the

@@ -23,6 +23,7 @@ struct PointPairsView {
   Span<const float> current_u;  ///< Columns in the current frame (px).
   Span<const float> current_v;  ///< Rows in the current frame (px).
 
+  /// N, the number of pairs.
   std::size_t size() const noexcept { return current_u.size(); }
 };
 
@@ -52,8 +53,8 @@ inline const char* toString(TwoViewModelKind kind) noexcept {
 /// The motion model of a frame pair: the matrix takes pixels of the earlier frame to the current
 /// one, as F of eq. 2 (current^T F earlier = 0) or as a homography (current ~ H earlier).
 struct TwoViewModel {
-  TwoViewModelKind kind = TwoViewModelKind::kNone;
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+  TwoViewModelKind kind = TwoViewModelKind::kNone;       ///< What `matrix` is.
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  ///< F or H; else not used.
 };
 
 /// Epipolar line (X, Y, Z) in the current frame of a pixel of the earlier frame, eq. 3:
@@ -73,6 +74,7 @@ inline double epipolarDistance(const Eigen::Matrix3d& fundamental, const Eigen::
                     : std::numeric_limits<double>::quiet_NaN();  // eq. 4
 }
 
+/// Checks the sizes.
 /// @throws std::invalid_argument unless the four arrays have one size.
 inline void checkPointPairs(const PointPairsView& pairs) {
   const std::size_t n = pairs.current_u.size();

@@ -34,6 +34,7 @@ enum class FilterRule : std::uint8_t {
   kHmc,           ///< HMC-SLAM, the paper.
 };
 
+/// All rules.
 inline constexpr FilterRule kFilterRules[] = {FilterRule::kNone,      FilterRule::kBox,
                                               FilterRule::kEpipolar,  FilterRule::kTwoThreshold,
                                               FilterRule::kChiSquare, FilterRule::kDepthRansac,
@@ -70,15 +71,16 @@ inline std::optional<FilterRule> filterRuleFromString(std::string_view name) noe
   return std::nullopt;
 }
 
+/// Who decides, and the options of each step.
 struct FilterStageOptions {
-  FilterRule rule = FilterRule::kHmc;
-  BoxDynamismOptions boxes;
-  ClusteringOptions clustering;
-  ClusterFilterOptions cluster_filter;
-  WeightOptions weights;
-  TwoThresholdOptions two_threshold;
-  ChiSquareOptions chi_square;
-  DepthRansacOptions depth_ransac;
+  FilterRule rule = FilterRule::kHmc;   ///< Who decides which points are dynamic.
+  BoxDynamismOptions boxes;             ///< Step 4, every rule.
+  ClusteringOptions clustering;         ///< Step 5, kHmc.
+  ClusterFilterOptions cluster_filter;  ///< Step 6, kHmc.
+  WeightOptions weights;                ///< Step 7, kHmc.
+  TwoThresholdOptions two_threshold;    ///< Of kTwoThreshold.
+  ChiSquareOptions chi_square;          ///< Of kChiSquare.
+  DepthRansacOptions depth_ransac;      ///< Of kDepthRansac.
 };
 
 /// What was decided about one box, and why.
@@ -92,17 +94,18 @@ struct BoxDecision {
 
 /// What was decided about the frame.
 struct FrameDecision {
-  float mean_distance = 0.0f;  ///< Over all key points with a distance (px); 0 without any.
-  std::size_t points = 0;
-  std::size_t measured = 0;  ///< Points with a distance.
-  std::size_t boxes = 0;
-  std::size_t dynamic_boxes = 0;
+  float mean_distance = 0.0f;     ///< Over all key points with a distance (px); 0 without any.
+  std::size_t points = 0;         ///< N.
+  std::size_t measured = 0;       ///< Points with a distance.
+  std::size_t boxes = 0;          ///< Detection boxes.
+  std::size_t dynamic_boxes = 0;  ///< Those that move.
   std::size_t points_in_dynamic_boxes = 0;  ///< For the 0.6 rule of the pose refinement.
   std::size_t dynamic = 0;                  ///< Points labelled dynamic.
   std::size_t suspect = 0;                  ///< Points labelled suspect.
   std::size_t unmatched = 0;                ///< Points labelled unmatched.
 };
 
+/// What was decided about N key points.
 struct FilterStageResult {
   std::vector<PointLabel> label;  ///< N verdicts.
   std::vector<float> weight;      ///< N weights, eq. 7, in [0, 1].
@@ -110,24 +113,24 @@ struct FilterStageResult {
   /// number from the first that finds it dynamic, else from the first that has it in a cluster.
   std::vector<int> cluster;
   std::vector<BoxDecision> boxes;  ///< One a detection box.
-  FrameDecision frame;
+  FrameDecision frame;             ///< The frame in numbers.
 };
 
 /// Memory that filterKeyPoints reuses from frame to frame, with its last result.
 struct FilterStageWorkspace {
-  FilterStageResult result;
-  BoxMembership membership;
-  BoxDynamism dynamism;
-  ClusteringWorkspace clustering;
-  ClusterFilterResult cluster_filter;
-  std::vector<BoxDecision> spare_boxes;  ///< Those of frames with more boxes, for their memory.
-  std::vector<std::uint8_t> peer_flags;
-  DepthRansacWorkspace depth_ransac;
-  std::vector<float> box_depth;
-  std::vector<float> box_distance;
-  std::vector<float> box_threshold;
-  std::vector<float> box_weight;
-  std::vector<std::uint8_t> in_dynamic_box;
+  FilterStageResult result;                  ///< Of the last call.
+  BoxMembership membership;                  ///< Which points each box holds.
+  BoxDynamism dynamism;                      ///< The box test.
+  ClusteringWorkspace clustering;            ///< Of the last dynamic box.
+  ClusterFilterResult cluster_filter;        ///< Of the last dynamic box.
+  std::vector<BoxDecision> spare_boxes;      ///< Those of frames with more boxes, for their memory.
+  std::vector<std::uint8_t> peer_flags;      ///< N flags of a peer's rule.
+  DepthRansacWorkspace depth_ransac;         ///< Of FilterRule::kDepthRansac.
+  std::vector<float> box_depth;              ///< Depths (m) of the points of the last dynamic box.
+  std::vector<float> box_distance;           ///< Their distances (px).
+  std::vector<float> box_threshold;          ///< Their thresholds (px).
+  std::vector<float> box_weight;             ///< Their weights, 0 for dynamic ones.
+  std::vector<std::uint8_t> in_dynamic_box;  ///< N flags.
 };
 
 namespace detail {

@@ -10,6 +10,7 @@
 
 namespace hmcdyn {
 
+/// Which matches speak for the camera's motion, and when F counts as defined.
 struct MotionModelOptions {
   int min_matches = 12;  ///< Fewer matches than this give no model; at least 8.
 
@@ -47,8 +48,10 @@ enum class FundamentalVerdict : std::uint8_t {
 /// "defined", "too few matches", "camera still", "ill-conditioned" or "no consensus".
 const char* toString(FundamentalVerdict verdict) noexcept;
 
+/// The motion model of a frame pair, and what it was made of.
 struct MotionModelEstimate {
   TwoViewModel model;  ///< What to measure distances with; kNone only where nothing fits.
+  /// Whether F is defined, and why not.
   FundamentalVerdict verdict = FundamentalVerdict::kTooFewMatches;
   bool background_only = false;  ///< Estimated from the matches outside the boxes.
   std::size_t matches = 0;       ///< Matches it was estimated from.
@@ -56,6 +59,7 @@ struct MotionModelEstimate {
   float median_distance = kNaN;  ///< Median distance of these matches (px): the noise of the model.
   float conditioning = 0.0f;     ///< Ratio that min_conditioning refers to; 0 = not computed.
 
+  /// True where `model` is a fundamental matrix.
   bool fundamentalDefined() const noexcept { return verdict == FundamentalVerdict::kDefined; }
 };
 

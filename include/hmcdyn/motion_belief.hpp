@@ -88,11 +88,13 @@ inline void checkOptions(const MotionBeliefOptions& options) {
 /// What is believed about N key points; of the frame before, it is the memory for this one. The two
 /// frames need not have as many points.
 struct MotionBelief {
-  std::vector<float> u, v;    ///< N pixels; one that is not finite takes no part.
+  std::vector<float> u;       ///< N columns (px); one that is not finite takes no part.
+  std::vector<float> v;       ///< N rows (px); the same.
   std::vector<float> depth;   ///< N depths of their surfaces (m); 0 = unknown, takes no part.
   std::vector<float> belief;  ///< N beliefs, 0 = at rest .. 1 = moving; NaN = nothing is known.
   std::vector<float> weight;  ///< N weights, 0 = a guess .. 1 = certain.
 
+  /// N.
   std::size_t size() const noexcept { return u.size(); }
 };
 
@@ -121,7 +123,7 @@ inline void checkBelief(const MotionBelief& belief, const char* name) {
 
 /// What a frame's points are judged by. All of one size N, borrowed.
 struct MotionBeliefInput {
-  KeyPointsView points;
+  KeyPointsView points;             ///< N key points of the frame.
   Span<const float> distance;       ///< Distances (px), NaN = none.
   Span<const PointLabel> label;     ///< Verdicts of the steps before.
   Span<const std::uint8_t> in_box;  ///< 1 in a detection box, whether or not it is dynamic.
@@ -201,11 +203,11 @@ inline float ownWeight(float evidence, SurfaceSupport support, bool is_dragged, 
 
 /// Memory that updateMotionBelief reuses from frame to frame.
 struct MotionBeliefWorkspace {
-  SurfaceDepths surface;
+  SurfaceDepths surface;         ///< Of this frame's points; filled by the caller.
   detail::Votes votes;           ///< Of this frame's measured points.
   detail::Votes memory;          ///< All that the frame before believed.
   detail::Votes dynamic_memory;  ///< What it believed to move.
-  Eigen::ArrayXf scratch;
+  Eigen::ArrayXf scratch;        ///< Of one count of votes.
 };
 
 namespace detail {
@@ -352,6 +354,7 @@ inline MotionBelief updateMotionBelief(const MotionBeliefInput& input, const Mot
   return current;
 }
 
+/// What applyMotionBelief makes of points whose flow may not be their own.
 struct BeliefVerdictOptions {
   /// Weight, in place of eq. 7's, of a kept point that a nearer surface may drag along: a corner at
   /// a silhouette moves with it, whatever it lies on. 0..1.

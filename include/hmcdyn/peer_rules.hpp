@@ -186,7 +186,7 @@ inline std::vector<std::uint8_t> dropByChiSquare(Span<const float> distance,
 
 /// Memory that dropByDepthRansac reuses, with its last result.
 struct DepthRansacWorkspace {
-  std::vector<std::uint8_t> dynamic;
+  std::vector<std::uint8_t> dynamic;   ///< N flags, the last result.
   std::vector<float> depth;            ///< Of a box's points that have one.
   std::vector<std::uint32_t> indices;  ///< Of the same points.
 };

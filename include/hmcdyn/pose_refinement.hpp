@@ -29,7 +29,10 @@ enum class DepthRow : std::uint8_t {
 };
 
 /// How a residual grows into a cost.
-enum class RobustLoss : std::uint8_t { kNone, kHuber };
+enum class RobustLoss : std::uint8_t {
+  kNone,   ///< As its square.
+  kHuber,  ///< The same up to a threshold, beyond it linear (Huber 1964).
+};
 
 /// What becomes of the weights 0 < lambda < 1 of suspect points.
 enum class WeightMode : std::uint8_t {
@@ -48,17 +51,22 @@ enum class PoseSolver : std::uint8_t {
 /// Map points and where the frame saw them: structure of arrays, borrowed. x, y, z, u and v have
 /// one size; the others have that size or are empty.
 struct PoseObservations {
-  Span<const float> x, y, z;  ///< Map points Z_i in the world's frame (m), taken as exact.
-  Span<const float> u, v;     ///< Observed pixels z_i (px), of the undistorted image.
-  Span<const float> sigma;    ///< Standard deviation of a pixel coordinate (px), > 0; empty = 1.
-  Span<const float> depth;    ///< Observed depths (m); 0, negative or NaN = none; empty = none.
-  Span<const float> weight;   ///< lambda_i of eq. 7, 0..1; empty = 1. 0 leaves the point out.
+  Span<const float> x;       ///< Map points Z_i in the world's frame (m), taken as exact: x,
+  Span<const float> y;       ///< y,
+  Span<const float> z;       ///< z.
+  Span<const float> u;       ///< Observed pixels z_i, of the undistorted image: columns (px),
+  Span<const float> v;       ///< rows (px).
+  Span<const float> sigma;   ///< Standard deviation of a pixel coordinate (px), > 0; empty = 1.
+  Span<const float> depth;   ///< Observed depths (m); 0, negative or NaN = none; empty = none.
+  Span<const float> weight;  ///< lambda_i of eq. 7, 0..1; empty = 1. 0 leaves the point out.
 
+  /// N, the number of observations.
   std::size_t size() const noexcept { return x.size(); }
 };
 
+/// What is minimised, by whom, and when it ends.
 struct PoseRefinementOptions {
-  DepthRow depth_row = DepthRow::kNone;
+  DepthRow depth_row = DepthRow::kNone;  ///< Of points with a depth.
   /// sigma_z(z) = depth_noise_floor + depth_noise_quadratic * z^2. The quadratic term is the
   /// Kinect's as Khoshelham and Oude Elberink measured it (Sensors 12, 2012): 3.6 cm at 5 m; the
   /// floor keeps near points from an unreal certainty.
@@ -66,7 +74,7 @@ struct PoseRefinementOptions {
   double depth_noise_quadratic = 1.425e-3;  ///< 1/m
   double baseline_fx = 40.0;  ///< bf of the virtual right camera (px m); 40 suits a Kinect.
 
-  RobustLoss loss = RobustLoss::kHuber;
+  RobustLoss loss = RobustLoss::kHuber;        ///< Of the rounds before the plain ones.
   double huber_two_rows = std::sqrt(5.991);    ///< Threshold without a depth row (sigma).
   double huber_three_rows = std::sqrt(7.815);  ///< Threshold with a depth row (sigma).
 
@@ -75,7 +83,7 @@ struct PoseRefinementOptions {
   double chi2_two_rows = 5.991;  ///< Inlier up to this squared residual: 95 % of chi2(2).
   double chi2_three_rows = 7.815;  ///< The same with a depth row: 95 % of chi2(3).
 
-  WeightMode weight_mode = WeightMode::kFixed;
+  WeightMode weight_mode = WeightMode::kFixed;  ///< Of suspect points.
   double kappa = 10.0;  ///< Strength of the prior on a weight: a residual of sqrt(kappa) sigma
                         ///< halves it. > 0; only for WeightMode::kJoint.
 
@@ -87,7 +95,7 @@ struct PoseRefinementOptions {
   double parameter_tolerance = 1e-9;  ///< Stops at a smaller relative step: relative to the sum
                                       ///< of the round's steps (kCollapsed) or to the pose.
 
-  PoseSolver solver = PoseSolver::kCollapsed;
+  PoseSolver solver = PoseSolver::kCollapsed;  ///< Who minimises.
 };
 
 /// Why the refinement stopped. The first two come with a refined pose, the others with the initial
@@ -103,6 +111,7 @@ enum class PoseRefinementTermination : std::uint8_t {
 /// "converged", "iteration limit", "too few points", "too few inliers" or "numerical failure".
 const char* toString(PoseRefinementTermination termination) noexcept;
 
+/// The refined pose, and how far it can be trusted.
 struct PoseRefinementResult {
   /// Refined pose; the initial one, untouched, unless succeeded().
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
@@ -128,6 +137,7 @@ struct PoseRefinementResult {
   int iterations = 0;         ///< Levenberg-Marquardt steps, over all rounds.
   double initial_cost = 0.0;  ///< Cost at the initial pose, over the points of the first round.
   double final_cost = 0.0;    ///< Cost at the refined pose, over the points of the last round.
+  /// Why it stopped.
   PoseRefinementTermination termination = PoseRefinementTermination::kTooFewPoints;
   std::string message;  ///< `termination` in words, with the solver's own account.
 
@@ -183,11 +193,13 @@ class CollapsedPoseProblem;
 /// influence on results. One thread at a time.
 class PoseRefinementWorkspace {
  public:
-  PoseRefinementWorkspace();
-  ~PoseRefinementWorkspace();
+  PoseRefinementWorkspace();   ///< Holds nothing yet.
+  ~PoseRefinementWorkspace();  ///< Frees the buffers.
   PoseRefinementWorkspace(const PoseRefinementWorkspace&) = delete;
   PoseRefinementWorkspace& operator=(const PoseRefinementWorkspace&) = delete;
+  /// Takes the buffers over; `other` may be assigned to or destroyed only.
   PoseRefinementWorkspace(PoseRefinementWorkspace&& other) noexcept;
+  /// The same.
   PoseRefinementWorkspace& operator=(PoseRefinementWorkspace&& other) noexcept;
 
  private:
@@ -205,39 +217,5 @@ PoseRefinementResult refinePose(const PoseObservations& observations, const Pinh
                                 const Eigen::Isometry3d& initial,
                                 const PoseRefinementOptions& options,
                                 PoseRefinementWorkspace& workspace);
-
-/// Whether a frame is worth the weights of eq. 7: more than `gate` of its key points lie in
-/// dynamic boxes (section III-D; the paper's gate is 0.6). Below, use hardWeights(). No points:
-/// false.
-/// @throws std::invalid_argument for more points in boxes than points, or a gate outside 0..1.
-inline bool useSoftWeights(std::size_t points_in_dynamic_boxes, std::size_t points,
-                           double gate = 0.6) {
-  if (points_in_dynamic_boxes > points) {
-    throw std::invalid_argument(
-        "points_in_dynamic_boxes is " + std::to_string(points_in_dynamic_boxes) +
-        ", expected at most the number of points, " + std::to_string(points));
-  }
-  if (!(gate >= 0.0 && gate <= 1.0)) {
-    throw std::invalid_argument("gate is " + std::to_string(gate) + ", expected 0..1");
-  }
-  // The quotient, not gate * points: correctly rounded, 3 of 5 is not more than 0.6.
-  return points > 0 &&
-         static_cast<double>(points_in_dynamic_boxes) / static_cast<double>(points) > gate;
-}
-
-/// Weights for a frame below the gate: 0 stays 0, everything else becomes 1.
-/// @throws std::invalid_argument for a negative weight or a NaN.
-inline std::vector<float> hardWeights(Span<const float> weights) {
-  std::vector<float> hard;
-  hard.reserve(weights.size());
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (!(weights[i] >= 0.0f)) {
-      throw std::invalid_argument("weights[" + std::to_string(i) + "] is " +
-                                  std::to_string(weights[i]) + ", expected 0..1");
-    }
-    hard.push_back(weights[i] > 0.0f ? 1.0f : 0.0f);
-  }
-  return hard;
-}
 
 }  // namespace hmcdyn

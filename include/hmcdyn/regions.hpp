@@ -21,12 +21,14 @@ namespace hmcdyn {
 /// @tparam Label an integer, such as std::uint8_t, std::uint16_t or std::int32_t.
 template <class Label>
 struct LabelImageView {
-  const Label* data = nullptr;
-  int width = 0;           ///< (px)
-  int height = 0;          ///< (px)
-  std::size_t stride = 0;  ///< Elements from a row to the next, >= width.
+  const Label* data = nullptr;  ///< Labels of the upper left pixel and those after it.
+  int width = 0;                ///< Columns (px).
+  int height = 0;               ///< Rows (px).
+  std::size_t stride = 0;       ///< Elements from a row to the next, >= width.
 
+  /// True where there is no pixel.
   bool empty() const noexcept { return data == nullptr || width <= 0 || height <= 0; }
+  /// Label at a pixel, which must lie in the image.
   Label at(int column, int row) const noexcept {
     return data[static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column)];
   }

@@ -13,21 +13,24 @@ namespace hmcdyn {
 template <class T>
 class Span {
  public:
-  constexpr Span() noexcept = default;
+  constexpr Span() noexcept = default;  ///< Of nothing.
+  /// Of `size` elements from `data` on.
   constexpr Span(T* data, std::size_t size) noexcept : data_(data), size_(size) {}
 
+  /// Of a whole container, which must outlive the view.
   template <class Container, class = std::enable_if_t<std::is_convertible_v<
                                  decltype(std::declval<Container&>().data()), T*>>>
   // NOLINTNEXTLINE(google-explicit-constructor,hicpp-explicit-conversions): a view, as std::span
   constexpr Span(Container&& container) noexcept
       : data_(container.data()), size_(static_cast<std::size_t>(container.size())) {}
 
-  constexpr T* data() const noexcept { return data_; }
-  constexpr std::size_t size() const noexcept { return size_; }
-  constexpr bool empty() const noexcept { return size_ == 0; }
+  constexpr T* data() const noexcept { return data_; }           ///< The first element.
+  constexpr std::size_t size() const noexcept { return size_; }  ///< Number of elements.
+  constexpr bool empty() const noexcept { return size_ == 0; }   ///< True without an element.
+  /// Element i, 0 <= i < size(); not checked.
   constexpr T& operator[](std::size_t i) const noexcept { return data_[i]; }
-  constexpr T* begin() const noexcept { return data_; }
-  constexpr T* end() const noexcept { return data_ + size_; }
+  constexpr T* begin() const noexcept { return data_; }        ///< The first element.
+  constexpr T* end() const noexcept { return data_ + size_; }  ///< Behind the last.
 
  private:
   T* data_ = nullptr;

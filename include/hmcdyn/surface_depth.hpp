@@ -18,17 +18,20 @@ namespace hmcdyn {
 /// A depth image (m), borrowed: row r starts at data + r * stride. 0, negative or not finite =
 /// none.
 struct DepthImageView {
-  const float* data = nullptr;
-  int width = 0;           ///< (px)
-  int height = 0;          ///< (px)
-  std::size_t stride = 0;  ///< Elements from a row to the next, >= width.
+  const float* data = nullptr;  ///< Depths (m) of the upper left pixel and those after it.
+  int width = 0;                ///< Columns (px).
+  int height = 0;               ///< Rows (px).
+  std::size_t stride = 0;       ///< Elements from a row to the next, >= width.
 
+  /// True where there is no pixel.
   bool empty() const noexcept { return data == nullptr || width <= 0 || height <= 0; }
+  /// Depth (m) at a pixel, which must lie in the image.
   float at(int column, int row) const noexcept {
     return data[static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column)];
   }
 };
 
+/// Which neighbours say on which surface a point lies.
 struct SurfaceDepthOptions {
   int own_radius = 2;      ///< Half side of the window that gives a point's own depth (px).
   float own_share = 0.4f;  ///< Share of its pixels that must have a depth, in (0, 1].

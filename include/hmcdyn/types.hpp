@@ -13,6 +13,8 @@
 
 #include <hmcdyn/span.hpp>
 
+/// Which key points of a frame lie on moving things: one header a step, in the order in which a
+/// frame's data flows (hmcdyn.hpp names them in that order).
 namespace hmcdyn {
 
 /// What a quantity is where it was not measured: an epipolar distance without a match, for one.
@@ -27,6 +29,7 @@ struct KeyPointsView {
   Span<const float> v;      ///< Rows (px), of the undistorted image.
   Span<const float> depth;  ///< Depths (m); 0, negative or NaN = none.
 
+  /// N, the number of key points.
   std::size_t size() const noexcept { return u.size(); }
 };
 
@@ -36,21 +39,26 @@ struct KeyPoints {
   std::vector<float> v;      ///< Rows (px), of the undistorted image.
   std::vector<float> depth;  ///< Depths (m); 0, negative or NaN = none.
 
+  /// N, the number of key points.
   std::size_t size() const noexcept { return u.size(); }
+  /// Memory for n key points.
   void reserve(std::size_t n) {
     u.reserve(n);
     v.reserve(n);
     depth.reserve(n);
   }
+  /// Appends a key point: pixel (px) and depth (m).
   // NOLINTNEXTLINE(readability-identifier-naming): as the standard containers say it
   void push_back(float column, float row, float metres) {
     u.push_back(column);
     v.push_back(row);
     depth.push_back(metres);
   }
+  /// A view of the three arrays; valid until one of them is resized.
   KeyPointsView view() const noexcept { return {u, v, depth}; }
 };
 
+/// Checks the sizes.
 /// @throws std::invalid_argument unless the three arrays have one size.
 inline void checkKeyPoints(const KeyPointsView& points) {
   if (points.v.size() != points.u.size() || points.depth.size() != points.u.size()) {
@@ -73,6 +81,7 @@ struct DetectionBox {
   int class_id = kPersonClassId;  ///< COCO class, 0 = person.
   float score = 1.0f;             ///< Confidence, 0..1.
 
+  /// True on the borders, too; false for NaN.
   bool contains(float u, float v) const noexcept {
     return u >= x_min && u <= x_max && v >= y_min && v <= y_max;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library's version; the build reads it from here.
+/// @file
+/// The library's version; the build reads it from here.
 #pragma once
 
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): for the preprocessor of whoever includes this

@@ -18,6 +18,7 @@
 
 namespace hmcdyn {
 
+/// Weights where eq. 8 has nothing to compare.
 struct WeightOptions {
   /// Weight of a kept point without depth, where eq. 8 has nothing to compare; 0..1.
   float without_depth = 0.5f;
@@ -106,6 +107,40 @@ inline std::vector<float> keptPointWeights(Span<const float> depth, const DepthA
   detail::weighLanes(rest.data(), anchor, options, rest.data());
   std::copy_n(rest.begin(), depth.size() - in_lanes, reuse.begin() + in_lanes);
   return reuse;
+}
+
+/// Whether a frame is worth the weights of eq. 7: more than `gate` of its key points lie in
+/// dynamic boxes (section III-D; the paper's gate is 0.6). Below, use hardWeights(). No points:
+/// false.
+/// @throws std::invalid_argument for more points in boxes than points, or a gate outside 0..1.
+inline bool useSoftWeights(std::size_t points_in_dynamic_boxes, std::size_t points,
+                           double gate = 0.6) {
+  if (points_in_dynamic_boxes > points) {
+    throw std::invalid_argument(
+        "points_in_dynamic_boxes is " + std::to_string(points_in_dynamic_boxes) +
+        ", expected at most the number of points, " + std::to_string(points));
+  }
+  if (!(gate >= 0.0 && gate <= 1.0)) {
+    throw std::invalid_argument("gate is " + std::to_string(gate) + ", expected 0..1");
+  }
+  // The quotient, not gate * points: correctly rounded, 3 of 5 is not more than 0.6.
+  return points > 0 &&
+         static_cast<double>(points_in_dynamic_boxes) / static_cast<double>(points) > gate;
+}
+
+/// Weights for a frame below the gate: 0 stays 0, everything else becomes 1.
+/// @throws std::invalid_argument for a negative weight or a NaN.
+inline std::vector<float> hardWeights(Span<const float> weights) {
+  std::vector<float> hard;
+  hard.reserve(weights.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!(weights[i] >= 0.0f)) {
+      throw std::invalid_argument("weights[" + std::to_string(i) + "] is " +
+                                  std::to_string(weights[i]) + ", expected 0..1");
+    }
+    hard.push_back(weights[i] > 0.0f ? 1.0f : 0.0f);
+  }
+  return hard;
 }
 
 }  // namespace hmcdyn

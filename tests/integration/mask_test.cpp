@@ -79,7 +79,6 @@ TEST(MaskFilter, AMaskThatFillsTheBoxGivesTheResultOfTheBox) {
   for (const bool belief : {false, true}) {
     FrameFilterOptions options;
     options.filter.use_belief = belief;
-    options.filter.flow_in_boxes = 0;  // a flow for every point, as with masks
     FrameFilter by_mask(options);
     FrameFilter by_box(options);
     // When
@@ -95,11 +94,11 @@ TEST(MaskFilter, AMaskThatFillsTheBoxGivesTheResultOfTheBox) {
   }
 }
 
-TEST(MaskFilter, EveryPointOfARegionIsMeasured) {
-  // Given a budget that boxes would have to keep to
+TEST(MaskFilter, WithoutALimitEveryPointOfARegionIsMeasured) {
+  // Given
   const FilmedScene film;
   FrameFilterOptions options;
-  options.filter.flow_in_boxes = 20;
+  options.filter.flow_in_boxes = 0;
   FrameFilter filter(options);
   // When
   const FrameFilterResult result =

@@ -13,6 +13,7 @@
 #include "slam/dataset/frame.hpp"
 #include "slam/dense/dense_map.hpp"
 #include "slam/detection/file_detector.hpp"
+#include "support/command_line.hpp"
 
 // The dense map of a rendered sequence with its true poses and boxes: what fusion alone does,
 // without the errors of tracking. hmcdyn_map_score says how good it is.
@@ -84,7 +85,6 @@ void run(const Arguments& arguments) {
 }  // namespace hmcdyn::slam
 
 int main(int argc, char** argv) {
-  constexpr int kBadUsage = 2;
   hmcdyn::slam::Arguments arguments;
   CLI::App app("Dense map of a rendered sequence with its true poses and boxes.");
   app.add_option("sequence", arguments.sequence, "Folder of hmcdyn_synthesize")->required();
@@ -95,10 +95,8 @@ int main(int argc, char** argv) {
   app.add_flag("--no-masks", arguments.no_masks, "Boxes are not left out");
   app.add_flag("--no-checks", arguments.no_checks,
                "Points that are rarely seen or looked through stay");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadUsage;
+  if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {
+    return *code;
   }
   try {
     hmcdyn::slam::run(arguments);

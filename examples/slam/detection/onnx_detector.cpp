@@ -55,7 +55,7 @@ class OnnxDetector final : public ObjectDetector {
       detect(cv::Mat::zeros(input_size_, input_size_, CV_8UC3), 0.0);
     } catch (const cv::Exception& error) {
       throw modelError(options_.model, fmt::format("with an input of {}: {}", size, error.err),
-                       "give the export's own input size");
+                       "give the export's own input size (--input-size)");
     } catch (const std::invalid_argument& error) {
       throw modelError(options_.model, error.what(), "give a YOLOv5 or YOLOv8 detector");
     }

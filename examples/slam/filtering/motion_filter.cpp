@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <hmcdyn/pose_refinement.hpp>
+#include <hmcdyn/weights.hpp>
 
 namespace hmcdyn::slam {
 namespace {

@@ -58,7 +58,7 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, SourceKind>{{"folder", SourceKind::kFolder},
                                                                     {"live", SourceKind::kLive}})
-              .description(""))
+              .description("{folder,live}"))
       ->default_str("folder")
       ->group("Input");
   app.add_option("--live-backend", options.live.backend, "Driver of the live camera")
@@ -74,7 +74,7 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, RunMode>{{"offline", RunMode::kOffline},
                                                                  {"realtime", RunMode::kRealtime}})
-              .description(""))
+              .description("{offline,realtime}"))
       ->default_str("offline")
       ->group("Input");
   app.add_option("--speed", options.speed, "realtime: so many times as fast as it was recorded")
@@ -117,6 +117,12 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
   app.add_option("--boxes", detector.boxes,
                  "Boxes for --detector file; a line: timestamp class x_min y_min x_max y_max score")
       ->group("Detection");
+  app.add_option(
+         "--input-size", detector.input_size,
+         "Side of the network's input (px), a multiple of 32: an ONNX model's is fixed by its "
+         "export; 0 = 640 for yolo, as in the .cfg for darknet")
+      ->capture_default_str()
+      ->group("Detection");
   app.add_option("--score-threshold", detector.score_threshold, "Lowest score of a box, 0..1")
       ->capture_default_str()
       ->group("Detection");
@@ -144,7 +150,8 @@ void declareFilter(CLI::App& app, SlamOptions& options) {
                  "hmc (the paper), box (drop whole boxes; RS ablation), epipolar (one threshold; "
                  "DF ablation), two_threshold (SG-SLAM), chi2 (OVD-SLAM), depth_ransac "
                  "(YOLO-SLAM), none")
-      ->transform(CLI::CheckedTransformer(filterNames()).description(""))
+      ->transform(CLI::CheckedTransformer(filterNames())
+                      .description("{hmc,box,epipolar,two_threshold,chi2,depth_ransac,none}"))
       ->default_str(toString(stage.rule))
       ->group("Filter");
   app.add_flag("!--no-soft-weights", motion.soft_weights,

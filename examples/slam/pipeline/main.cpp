@@ -13,11 +13,11 @@
 #include "slam/pipeline/command_line.hpp"
 #include "slam/pipeline/run.hpp"
 #include "slam/pipeline/stop_request.hpp"
+#include "support/command_line.hpp"
 
 namespace {
 
 constexpr int kBadData = 1;
-constexpr int kBadUsage = 2;
 
 void printSummary(const nlohmann::json& summary, const std::filesystem::path& output) {
   const nlohmann::json& counts = summary.at("counts");
@@ -32,12 +32,10 @@ void printSummary(const nlohmann::json& summary, const std::filesystem::path& ou
 
 int run(int argc, char** argv) {
   hmcdyn::slam::SlamOptions options;
-  CLI::App app;
+  CLI::App app("", "hmcdyn_slam");
   hmcdyn::slam::declareOptions(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? EXIT_SUCCESS : kBadUsage;
+  if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {
+    return *code;
   }
   try {
     const hmcdyn::slam::StopRequest stop;  // Ctrl-C finishes what there is
@@ -48,7 +46,7 @@ int run(int argc, char** argv) {
     return written && counts.at("frames_tracked") > 0 ? EXIT_SUCCESS : kBadData;
   } catch (const std::invalid_argument& error) {
     spdlog::error("{}", error.what());
-    return kBadUsage;
+    return hmcdyn::support::kBadUsage;
   }
 }
 
