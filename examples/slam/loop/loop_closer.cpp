@@ -296,8 +296,12 @@ LoopClosure closeLoops(const LoopSnapshot& snapshot, const LoopCloserOptions& op
     points = closure.bundle.points;
   }
   closure.loop_error = loopErrors(snapshot, places, poses, options);
-  closure.refused = refusedOf(closure.loop_error, options.max_loop_error);
-  if (closure.refused) {
+  const bool stopped = closure.bundle.termination == BundleTermination::kStopped;
+  if (!stopped) {
+    closure.refused = refusedOf(closure.loop_error, options.max_loop_error);
+  }
+  closure.closed = !stopped && !closure.refused;
+  if (!closure.closed) {
     closure.inlier.clear();
     std::iota(into.begin(), into.end(), 0);
     for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -93,9 +93,11 @@ struct LoopClosure {
   std::vector<std::uint8_t> inlier;
   double largest_correction = 0.0;  ///< Of a key frame's centre (m).
   std::vector<double> loop_error;   ///< Per loop, at `key_frames` (sigma^2).
-  /// Place in the snapshot's loops of the one that is refused, the worst. Then nothing was done:
-  /// key frames and points are as given, and nothing is fused.
+  /// Place in the snapshot's loops of the one that is refused, the worst.
   std::optional<std::size_t> refused;
+  /// False where a loop is refused, or the adjustment that would tell was stopped: key frames and
+  /// points are as given then, and nothing is fused.
+  bool closed = true;
   PoseGraphSolution pose_graph;  ///< Squared errors: loops first, in their order.
   BundleSolution bundle;
 };

@@ -26,6 +26,18 @@ LoopSnapshot::Sighting sightingOf(const Frame& frame, const Observation& seen, i
   return sighting;
 }
 
+/// What a small motion (rotation vector, translation) is on the other side of a rigid one.
+Eigen::Matrix<double, 6, 6> adjointOf(const Eigen::Isometry3d& motion) {
+  const Eigen::Vector3d& t = motion.translation();
+  Eigen::Matrix3d cross;
+  cross << 0.0, -t.z(), t.y(), t.z(), 0.0, -t.x(), -t.y(), t.x(), 0.0;
+  Eigen::Matrix<double, 6, 6> adjoint = Eigen::Matrix<double, 6, 6>::Zero();
+  adjoint.topLeftCorner<3, 3>() = motion.linear();
+  adjoint.bottomRightCorner<3, 3>() = motion.linear();
+  adjoint.bottomLeftCorner<3, 3>() = cross * motion.linear();
+  return adjoint;
+}
+
 void addPoints(const Map& map, LoopSnapshot& snapshot) {
   for (std::size_t i = 0; i < map.points().size(); ++i) {
     const MapPoint& point = map.points()[i];
@@ -77,6 +89,28 @@ LoopKeyFrame makeLoopKeyFrame(const Map& map, int key_frame) {
   return copy;
 }
 
+std::optional<LoopConstraint> survivingLoop(const Map& map, const LoopConstraint& loop) {
+  const int from = map.survivorOf(static_cast<int>(loop.from));
+  const int to = map.survivorOf(static_cast<int>(loop.to));
+  if (from == to) {
+    return std::nullopt;
+  }
+  const auto fromSurvivor = [&map](std::size_t culled, int survivor) {
+    return map.poseOf(static_cast<int>(culled)) * map.poseOf(survivor).inverse();
+  };
+  LoopConstraint surviving = loop;
+  surviving.from = static_cast<std::size_t>(from);
+  surviving.to = static_cast<std::size_t>(to);
+  const Eigen::Isometry3d to_from_survivor = fromSurvivor(loop.to, to);
+  surviving.to_from = to_from_survivor.inverse() * loop.to_from * fromSurvivor(loop.from, from);
+  const Eigen::Matrix<double, 6, 6> moved = adjointOf(to_from_survivor);
+  surviving.information = moved.transpose() * loop.information * moved;
+  if (from != static_cast<int>(loop.from) || to != static_cast<int>(loop.to)) {
+    surviving.key_points.clear();  // they were the culled ones'
+  }
+  return surviving;
+}
+
 LoopSnapshot makeLoopSnapshot(const Map& map, const std::vector<LoopConstraint>& loops) {
   LoopSnapshot snapshot;
   snapshot.camera = map.camera();
@@ -92,11 +126,7 @@ LoopSnapshot makeLoopSnapshot(const Map& map, const std::vector<LoopConstraint>&
       }
     }
   }
-  for (const LoopConstraint& loop : loops) {
-    if (!map.keyFrames()[loop.from].removed && !map.keyFrames()[loop.to].removed) {
-      snapshot.loops.push_back(loop);
-    }
-  }
+  snapshot.loops = loops;
   addPoints(map, snapshot);
   return snapshot;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "slam/loop/loop_closer.hpp"
@@ -18,7 +19,12 @@ LoopKeyFrame makeLoopKeyFrame(const Frame& frame);
 /// A key frame of the map, with what it shares with others.
 LoopKeyFrame makeLoopKeyFrame(const Map& map, int key_frame);
 
+/// A loop whose ends may have been culled since, told between the key frames that they hang on.
+/// None where both hang on one.
+std::optional<LoopConstraint> survivingLoop(const Map& map, const LoopConstraint& loop);
+
 /// The map as loop closing needs it: all key frames and points; sightings of trusted points only.
+/// @param loops between key frames that were not culled, see survivingLoop().
 LoopSnapshot makeLoopSnapshot(const Map& map, const std::vector<LoopConstraint>& loops);
 
 /// What a closed loop means for the map.

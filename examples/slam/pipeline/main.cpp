@@ -40,7 +40,8 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? EXIT_SUCCESS : kBadUsage;
   }
   try {
-    const hmcdyn::slam::StopRequest stop;  // Ctrl-C finishes what there is
+    const hmcdyn::slam::StopRequest stop;             // Ctrl-C finishes what there is
+    options.loops.closer.bundle.stop = &stop.flag();  // but for minutes of global adjustment
     const nlohmann::json summary = hmcdyn::slam::runSlam(options, [&] { return stop.requested(); });
     printSummary(summary, options.output);
     return summary.at("counts").at("frames_tracked") > 0 ? EXIT_SUCCESS : kBadData;

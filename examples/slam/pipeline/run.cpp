@@ -148,6 +148,7 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop) {
   }
 
   pipeline.finish();
+  writer.writeLoops(pipeline.map(), pipeline.loops());
   writer.finish(pipeline.trajectory(), pipeline.map());
   if (dense) {
     const FusionResult map = dense->fuse(pipeline.map());

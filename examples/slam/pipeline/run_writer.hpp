@@ -30,6 +30,9 @@ class RunWriter {
   /// @throws std::runtime_error naming the file where one cannot be written.
   void write(const FrameOutcome& outcome, const Map& map, LoopClosing& loops);
 
+  /// Rows for the candidates whose fate was decided since; write() does it for each frame.
+  void writeLoops(const Map& map, LoopClosing& loops);
+
   /// The poses as they are at the end, in place of those of the moment.
   void finish(const std::vector<StampedPose>& poses, const Map& map);
 
