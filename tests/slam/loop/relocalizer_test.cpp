@@ -69,7 +69,7 @@ TEST(Relocalizer, FindsAFrameInAKnownRoom) {
     EXPECT_LT(metresBetween(*result.camera_from_world, truth), 0.01) << "at " << x;
     EXPECT_LT(radiansBetween(*result.camera_from_world, truth), 0.003) << "at " << x;
     EXPECT_EQ(result.method, RelocalizationMethod::kRigid);
-    EXPECT_EQ(result.tried, 5U);
+    EXPECT_EQ(result.tried, 1U);  // the first gave enough
     EXPECT_EQ(result.matches.size(), result.most_inliers);
     EXPECT_GE(result.most_matches, result.most_inliers);
   }
@@ -81,6 +81,22 @@ TEST(Relocalizer, WithoutNoiseThePoseIsExact) {
   const RelocalizationResult result = known.find(lostAt(landmarks, at(0.1), {}));
   ASSERT_TRUE(result.camera_from_world);
   EXPECT_LT(metresBetween(*result.camera_from_world, at(0.1)), 1e-4);  // pixels are floats
+}
+
+TEST(Relocalizer, TriesOnUntilThereAreEnoughInliersAndTakesTheBest) {
+  const Landmarks landmarks = room(15);
+  const KnownRoom known(landmarks);
+  const LoopKeyFrame frame = lostAt(landmarks, at(0.3));
+  RelocalizerOptions options;
+  options.enough_inliers = 100000;
+  const RelocalizationResult best_of_all = known.find(frame, options);
+  EXPECT_EQ(best_of_all.tried, 5U);
+  EXPECT_GE(best_of_all.most_inliers, known.find(frame).most_inliers);
+  EXPECT_EQ(best_of_all.matches.size(), best_of_all.most_inliers);
+  options.enough_inliers = 0;
+  EXPECT_EQ(known.find(frame, options).tried, 1U);
+  // Enough is not before there is a pose.
+  EXPECT_EQ(known.find(lostAt(room(16), at(0.0)), options).tried, 5U);
 }
 
 // Each match is one landmark, by its number in the key frame and what the frame sees of it.
