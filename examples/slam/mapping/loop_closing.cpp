@@ -5,8 +5,6 @@
 #include <iterator>
 #include <utility>
 
-#include "slam/mapping/map_snapshot.hpp"
-
 namespace hmcdyn::slam {
 namespace {
 
@@ -34,7 +32,7 @@ LoopClosing::Answer LoopClosing::run(State& state, const LoopClosingOptions& opt
     return state.detector.process(std::move(detect->key_frame));
   }
   if (const auto* closure = std::get_if<CloseJob>(&job)) {
-    return close(*closure->snapshot, options.closer);
+    return close(closure->map, options.closer);
   }
   const RelocalizationResult found =
       slam::relocalize(std::get<RelocalizeJob>(job).frame, state.detector.index(),
@@ -49,10 +47,10 @@ LoopClosing::Answer LoopClosing::run(State& state, const LoopClosingOptions& opt
   return relocalized;
 }
 
-LoopClosing::Closed LoopClosing::close(const LoopSnapshot& snapshot,
-                                       const LoopCloserOptions& options) {
+LoopClosing::Closed LoopClosing::close(const MapCopy& map, const LoopCloserOptions& options) {
   Closed closed;
   try {
+    const LoopSnapshot snapshot = toSnapshot(map);
     const LoopClosure closure = closeLoops(snapshot, options);
     closed.refused = closure.refused;
     if (closure.closed) {
@@ -80,6 +78,7 @@ void LoopClosing::process(const Map& map) {
   if (!options_.enabled) {
     return;
   }
+  copier_.remember(map);
   if (worker_.pending() >= kQueue) {
     ++left_out_;
     return;
@@ -126,8 +125,7 @@ void LoopClosing::submitClosure(const Map& map) {
   }
   if (anything_new) {
     closing_ = true;
-    worker_.submit(
-        CloseJob{std::make_shared<const LoopSnapshot>(makeLoopSnapshot(map, constraints))});
+    worker_.submit(CloseJob{copier_.copy(map, std::move(constraints))});
   }
 }
 

@@ -14,6 +14,7 @@
 #include "slam/loop/loop_detector.hpp"
 #include "slam/loop/relocalizer.hpp"
 #include "slam/mapping/map.hpp"
+#include "slam/mapping/map_snapshot.hpp"
 
 namespace hmcdyn::slam {
 
@@ -71,7 +72,7 @@ class LoopClosing {
     std::vector<std::size_t> culled;  ///< Key frames to forget.
   };
   struct CloseJob {
-    std::shared_ptr<const LoopSnapshot> snapshot;
+    MapCopy map;
   };
   /// What became of a CloseJob: a correction, or a loop that is refused (place in the snapshot's
   /// loops), or an error, or none of these where it was stopped.
@@ -99,7 +100,7 @@ class LoopClosing {
   };
 
   static Answer run(State& state, const LoopClosingOptions& options, Job job);
-  static Closed close(const LoopSnapshot& snapshot, const LoopCloserOptions& options);
+  static Closed close(const MapCopy& map, const LoopCloserOptions& options);
 
   std::optional<MapCorrection> takeUp(Answer answer, const Map& map);
   std::optional<MapCorrection> takeUp(Closed closed);
@@ -112,6 +113,7 @@ class LoopClosing {
   std::vector<Loop> loops_;             ///< Those that were not refused.
   std::vector<std::size_t> submitted_;  ///< Places in loops_ of the loops that are being closed.
   std::vector<LoopEvent> events_;
+  MapCopier copier_;
   std::optional<Relocalized> relocalized_;
   std::vector<bool> forgotten_;  ///< Key frames that the thread need not know any more.
   std::size_t frames_waited_ = 0;

@@ -2,8 +2,8 @@
 #include "slam/mapping/map_snapshot.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -101,7 +101,7 @@ TEST(LoopSnapshotOfMap, HoldsKeyFramesPointsAndTrustedSightings) {
   while (tour.map.points()[0].belief.log_odds >= tour.map.options().belief.trust) {
     tour.map.count(0, true, {PointLabel::kDynamic, 0.0f, true});
   }
-  const LoopSnapshot snapshot = makeLoopSnapshot(tour.map, {});
+  const LoopSnapshot snapshot = toSnapshot(MapCopier().copy(tour.map, {}));
   ASSERT_EQ(snapshot.key_frames.size(), 5U);
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_EQ(snapshot.key_frames[k].id, k);
@@ -129,7 +129,7 @@ TEST(LoopSnapshotOfMap, CovisibilityIsTheNumberOfCommonPoints) {
   for (int k = 0; k < 6; ++k) {
     tour.step();
   }
-  const LoopSnapshot snapshot = makeLoopSnapshot(tour.map, {});
+  const LoopSnapshot snapshot = toSnapshot(MapCopier().copy(tour.map, {}));
   EXPECT_EQ(snapshot.covisibility.size(), 15U);
   for (const auto& pair : snapshot.covisibility) {
     EXPECT_LT(pair.a, pair.b);
@@ -142,6 +142,72 @@ TEST(LoopSnapshotOfMap, CovisibilityIsTheNumberOfCommonPoints) {
   }
 }
 
+// By the map's own lists of observations, the other way round.
+TEST(LoopSnapshotOfMap, SightingsAreTheMapsObservations) {
+  MapTour tour(hall(80, 1500), kDrift);
+  for (int k = 0; k < 6; ++k) {
+    tour.step();
+  }
+  const LoopSnapshot snapshot = toSnapshot(MapCopier().copy(tour.map, {}));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < tour.map.points().size(); ++i) {
+    for (const Observation& seen : tour.map.points()[i].observations) {
+      const auto& sighting = snapshot.sightings.at(next++);
+      const Frame& frame = tour.map.keyFrames()[static_cast<std::size_t>(seen.key_frame)].frame;
+      EXPECT_EQ(sighting.point, static_cast<int>(i));
+      EXPECT_EQ(static_cast<int>(sighting.key_frame), seen.key_frame);
+      EXPECT_EQ(sighting.u, frame.points.u[seen.key_point]);
+      EXPECT_EQ(sighting.v, frame.points.v[seen.key_point]);
+      EXPECT_EQ(sighting.depth, frame.points.depth[seen.key_point]);
+      EXPECT_EQ(sighting.sigma, frame.sigma[seen.key_point]);
+      EXPECT_EQ(sighting.weight, frame.weight[seen.key_point]);
+    }
+  }
+  EXPECT_EQ(next, snapshot.sightings.size());
+}
+
+TEST(MapCopier, ACopyStaysAsItIsWhenTheMapGoesOn) {
+  MapTour tour(hall(80, 1500), kDrift);
+  MapCopier copier;
+  for (int k = 0; k < 5; ++k) {
+    tour.step();
+    copier.remember(tour.map);
+  }
+  const MapCopy copy = copier.copy(tour.map, {});
+  const Eigen::Vector3d first_point = tour.map.points()[0].position;
+  tour.step();
+  MapCorrection moved;
+  moved.key_frames = {{0, onTour(3)}};
+  moved.points = {{0, {9.0, 9.0, 9.0}}};
+  tour.map.apply(moved);
+  EXPECT_EQ(copy.key_frames.size(), 5U);
+  EXPECT_EQ(copy.key_frames[0].camera_from_world.matrix(), onTour(0).matrix());
+  EXPECT_EQ(copy.point_position[0], first_point);
+  // The next one has what is new, and shares what is not.
+  const MapCopy next = copier.copy(tour.map, {});
+  ASSERT_EQ(next.key_frames.size(), 6U);
+  EXPECT_EQ(next.point_position[0], Eigen::Vector3d(9.0, 9.0, 9.0));
+  EXPECT_EQ(next.key_frames[2].seen, copy.key_frames[2].seen);
+  ASSERT_NE(next.key_frames[5].seen, nullptr);
+  EXPECT_EQ(next.key_frames[5].seen->points.u, tour.map.keyFrames()[5].frame.points.u);
+}
+
+TEST(MapCopier, WhatCulledKeyFramesSawIsLetGo) {
+  MapTour tour(hall(80, 1500), kDrift);
+  MapCopier copier;
+  for (int k = 0; k < 12; ++k) {
+    tour.step();
+    copier.remember(tour.map);
+  }
+  const MapTour culled = culledTour();  // the same key frames
+  const int gone = culledOf(culled.map);
+  std::weak_ptr<const KeyFrameSightings> seen =
+      copier.copy(tour.map, {}).key_frames[static_cast<std::size_t>(gone)].seen;
+  ASSERT_FALSE(seen.expired());
+  copier.copy(culled.map, {});
+  EXPECT_TRUE(seen.expired());
+}
+
 TEST(LoopSnapshotOfMap, CulledKeyFramesAreNotInIt) {
   const MapTour tour = culledTour();
   std::size_t culled = 0;
@@ -149,7 +215,7 @@ TEST(LoopSnapshotOfMap, CulledKeyFramesAreNotInIt) {
     culled += key_frame.removed ? 1 : 0;
   }
   ASSERT_GT(culled, 0U);
-  const LoopSnapshot snapshot = makeLoopSnapshot(tour.map, {});
+  const LoopSnapshot snapshot = toSnapshot(MapCopier().copy(tour.map, {}));
   EXPECT_EQ(snapshot.key_frames.size(), 12 - culled);
   EXPECT_NO_THROW(closeLoops(snapshot));  // no id is unknown
 }
