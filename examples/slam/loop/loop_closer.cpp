@@ -149,6 +149,7 @@ std::vector<double> redundancyOf(const std::vector<Tie>& ties, std::size_t key_f
   std::vector<double> up_to(key_frames + 2, 0.0);  // sums of it
   std::partial_sum(over_step.begin(), over_step.end(), up_to.begin() + 1);
   std::vector<double> redundancy;
+  redundancy.reserve(ties.size());
   for (const Tie& tie : ties) {
     // span times the mean number of ties over its steps
     redundancy.push_back(isAlongPath(tie) ? up_to[static_cast<std::size_t>(tie.b)] -
@@ -258,6 +259,7 @@ std::vector<double> loopErrors(const LoopSnapshot& snapshot, const Places& place
                                const LoopCloserOptions& options) {
   const Matrix6d floor = informationOf(options.loop_sigma_rotation, options.loop_sigma_translation);
   std::vector<double> errors;
+  errors.reserve(snapshot.loops.size());
   for (const LoopConstraint& loop : snapshot.loops) {
     const auto from = static_cast<std::size_t>(places.key_frames.of(loop.from, "loops.from"));
     const auto to = static_cast<std::size_t>(places.key_frames.of(loop.to, "loops.to"));
