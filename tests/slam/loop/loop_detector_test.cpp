@@ -63,6 +63,7 @@ class Corridor {
 /// Key frames 0, 1, 2 at the corridor's start, 3 .. 17 at its other end: the start is old then.
 std::vector<LoopReport> walkAway(LoopDetector& detector, Corridor& corridor) {
   std::vector<LoopReport> reports;
+  reports.reserve(18);
   for (int k = 0; k < 3; ++k) {
     reports.push_back(detector.process(corridor.next(0.3 * k)));
   }

@@ -38,12 +38,10 @@ const Eigen::Isometry3d kAside = motionOf({0.05, -0.15, 0.08}, {0.25, -0.1, 0.15
 /// Whether each pair of key points is one landmark.
 bool areLandmarks(const std::vector<std::pair<int, int>>& pairs, const LoopKeyFrame& from,
                   const LoopKeyFrame& to) {
-  for (const auto& [i, j] : pairs) {
-    if (from.map_point[static_cast<std::size_t>(i)] != to.map_point[static_cast<std::size_t>(j)]) {
-      return false;
-    }
-  }
-  return true;
+  return std::all_of(pairs.begin(), pairs.end(), [&](const std::pair<int, int>& pair) {
+    return from.map_point[static_cast<std::size_t>(pair.first)] ==
+           to.map_point[static_cast<std::size_t>(pair.second)];
+  });
 }
 
 // Two visits to one room.

@@ -154,6 +154,7 @@ TEST(RigidRansac, FewerThanThreePairsAreRefused) {
 
 TEST(RigidRansac, PairsOnALineAreRefused) {
   std::vector<SightedPair> pairs;
+  pairs.reserve(40);
   for (int i = 0; i < 40; ++i) {
     pairs.push_back(exactPair({-0.8 + 0.04 * i, 0.3 - 0.01 * i, 2.0 + 0.02 * i}, kMotion));
   }
@@ -223,6 +224,7 @@ bool agrees(const SightedPair& last,
             const Eigen::Isometry3d& to_from = Eigen::Isometry3d::Identity(), double sigma = 1.0) {
   Random random(11);
   std::vector<SightedPair> pairs;
+  pairs.reserve(201);
   for (int i = 0; i < 200; ++i) {
     pairs.push_back(exactPair(anywhere(random), to_from, sigma));
   }

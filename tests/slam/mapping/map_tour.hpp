@@ -40,8 +40,8 @@ inline Frame frameOf(const LoopKeyFrame& seen) {
 /// map point while it is in view, and has a new one when it comes back.
 class MapTour {
  public:
-  MapTour(Landmarks landmarks, const Drift& drift)
-      : map(kLens, {}), landmarks_(std::move(landmarks)), drift_(drift) {}
+  MapTour(Landmarks landmarks, Drift drift)
+      : map(kLens, {}), landmarks_(std::move(landmarks)), drift_(std::move(drift)) {}
 
   Map map;
   std::vector<Eigen::Isometry3d> truth;
