@@ -2,6 +2,7 @@
 #include "slam/loop/descriptor_matcher.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <utility>
@@ -131,6 +132,7 @@ TEST(DescriptorMatcher, AgreesWithSortedDistancesOnRandomDescriptors) {
   const cv::Mat to = draw(45);
   const auto partnerOf = [](const cv::Mat& row, const cv::Mat& others) {
     std::vector<std::pair<int, int>> sorted;
+    sorted.reserve(static_cast<std::size_t>(others.rows));
     for (int j = 0; j < others.rows; ++j) {
       sorted.emplace_back(static_cast<int>(cv::norm(row, others.row(j), cv::NORM_HAMMING)), j);
     }
