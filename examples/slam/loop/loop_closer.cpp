@@ -2,6 +2,8 @@
 #include "slam/loop/loop_closer.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -67,6 +69,7 @@ void checkOptions(const LoopCloserOptions& options) {
   requirePositive("options.loop_sigma_rotation", options.loop_sigma_rotation);
   requirePositive("options.loop_sigma_translation", options.loop_sigma_translation);
   requireAtLeast("options.reference_covisibility", options.reference_covisibility, 1);
+  requirePositive("options.max_loop_error", options.max_loop_error);
 }
 
 Matrix6d informationOf(double sigma_rotation, double sigma_translation) {
@@ -84,15 +87,87 @@ Matrix6d withFloor(const Matrix6d& information, const Matrix6d& floor) {
   return 0.5 * (combined + combined.transpose());
 }
 
-PoseGraphEdge covisibilityEdge(const LoopSnapshot& snapshot, int from, int to, int weight,
+/// Two key frames that share points or follow each other: a comes before b.
+struct Tie {
+  int a = 0;
+  int b = 0;
+  int weight = 0;  // points that they share
+
+  int span() const { return b - a; }
+};
+
+std::vector<Tie> tiesOf(const LoopSnapshot& snapshot, const Places& places,
+                        const LoopCloserOptions& options) {
+  std::vector<Tie> ties;
+  std::vector<int> weight_to_next(snapshot.key_frames.size(), 0);
+  for (const auto& pair : snapshot.covisibility) {
+    const int first = places.key_frames.of(pair.a, "covisibility.a");
+    const int second = places.key_frames.of(pair.b, "covisibility.b");
+    const Tie tie{std::min(first, second), std::max(first, second), pair.weight};
+    if (tie.span() == 1) {
+      int& weight = weight_to_next[static_cast<std::size_t>(tie.a)];
+      weight = std::max(weight, tie.weight);
+    } else if (tie.span() > 1 && tie.weight >= options.min_covisibility) {
+      ties.push_back(tie);
+    }
+  }
+  for (int i = 0; i + 1 < static_cast<int>(snapshot.key_frames.size()); ++i) {
+    ties.push_back({i, i + 1, weight_to_next[static_cast<std::size_t>(i)]});
+  }
+  return ties;
+}
+
+/// How much less a tie says than if it stood alone. Along the path, where each key frame is tied to
+/// all before it up to some, many ties span the same step and have its one error in them: a tie
+/// over d steps has d steps' variance, and of n over a step each repeats the others. So divided,
+/// they hold a step as one tie would; else a chain of many key frames is too stiff to be closed. A
+/// tie to a place that the path had left stands alone.
+std::vector<double> redundancyOf(const std::vector<Tie>& ties, std::size_t key_frames) {
+  std::vector<std::vector<int>> before(key_frames);
+  for (const Tie& tie : ties) {
+    before[static_cast<std::size_t>(tie.b)].push_back(tie.a);
+  }
+  std::vector<int> earliest(key_frames, 0);  // without a gap before the key frame
+  for (std::size_t b = 0; b < key_frames; ++b) {
+    std::sort(before[b].begin(), before[b].end(), std::greater<>());
+    earliest[b] = static_cast<int>(b);
+    for (const int a : before[b]) {
+      earliest[b] = a == earliest[b] - 1 ? a : earliest[b];
+    }
+  }
+  const auto isAlongPath = [&](const Tie& tie) {
+    return tie.a >= earliest[static_cast<std::size_t>(tie.b)];
+  };
+  std::vector<double> over_step(key_frames + 1, 0.0);  // ties over the step from i to i + 1
+  for (const Tie& tie : ties) {
+    if (isAlongPath(tie)) {
+      over_step[static_cast<std::size_t>(tie.a)] += 1.0;
+      over_step[static_cast<std::size_t>(tie.b)] -= 1.0;
+    }
+  }
+  std::partial_sum(over_step.begin(), over_step.end(), over_step.begin());
+  std::vector<double> up_to(key_frames + 2, 0.0);  // sums of it
+  std::partial_sum(over_step.begin(), over_step.end(), up_to.begin() + 1);
+  std::vector<double> redundancy;
+  redundancy.reserve(ties.size());
+  for (const Tie& tie : ties) {
+    // span times the mean number of ties over its steps
+    redundancy.push_back(isAlongPath(tie) ? up_to[static_cast<std::size_t>(tie.b)] -
+                                                up_to[static_cast<std::size_t>(tie.a)]
+                                          : 1.0);
+  }
+  return redundancy;
+}
+
+PoseGraphEdge covisibilityEdge(const LoopSnapshot& snapshot, const Tie& tie, double redundancy,
                                const LoopCloserOptions& options) {
   PoseGraphEdge edge;
-  edge.from = from;
-  edge.to = to;
-  edge.to_from = snapshot.key_frames[static_cast<std::size_t>(to)].camera_from_world *
-                 snapshot.key_frames[static_cast<std::size_t>(from)].camera_from_world.inverse();
+  edge.from = tie.a;
+  edge.to = tie.b;
+  edge.to_from = snapshot.key_frames[static_cast<std::size_t>(tie.b)].camera_from_world *
+                 snapshot.key_frames[static_cast<std::size_t>(tie.a)].camera_from_world.inverse();
   edge.information =
-      static_cast<double>(std::max(weight, 1)) / options.reference_covisibility *
+      static_cast<double>(std::max(tie.weight, 1)) / options.reference_covisibility / redundancy *
       informationOf(options.covisibility_sigma_rotation, options.covisibility_sigma_translation);
   return edge;
 }
@@ -110,20 +185,10 @@ PoseGraphProblem graphOf(const LoopSnapshot& snapshot, const Places& places,
                            places.key_frames.of(loop.to, "loops.to"), loop.to_from,
                            withFloor(loop.information, floor), true});
   }
-  std::vector<int> weight_to_next(snapshot.key_frames.size(), 0);
-  for (const auto& pair : snapshot.covisibility) {
-    const int a = places.key_frames.of(pair.a, "covisibility.a");
-    const int b = places.key_frames.of(pair.b, "covisibility.b");
-    if (std::abs(a - b) == 1) {
-      int& weight = weight_to_next[static_cast<std::size_t>(std::min(a, b))];
-      weight = std::max(weight, pair.weight);
-    } else if (a != b && pair.weight >= options.min_covisibility) {
-      graph.edges.push_back(covisibilityEdge(snapshot, a, b, pair.weight, options));
-    }
-  }
-  for (int i = 0; i + 1 < static_cast<int>(snapshot.key_frames.size()); ++i) {
-    graph.edges.push_back(
-        covisibilityEdge(snapshot, i, i + 1, weight_to_next[static_cast<std::size_t>(i)], options));
+  const std::vector<Tie> ties = tiesOf(snapshot, places, options);
+  const std::vector<double> redundancy = redundancyOf(ties, snapshot.key_frames.size());
+  for (std::size_t i = 0; i < ties.size(); ++i) {
+    graph.edges.push_back(covisibilityEdge(snapshot, ties[i], redundancy[i], options));
   }
   return graph;
 }
@@ -188,6 +253,34 @@ BundleProblem bundleOf(const LoopSnapshot& snapshot, const Places& places,
   return problem;
 }
 
+/// By how much poses contradict each loop: squared errors (sigma^2), as in the pose graph.
+std::vector<double> loopErrors(const LoopSnapshot& snapshot, const Places& places,
+                               const std::vector<Eigen::Isometry3d>& poses,
+                               const LoopCloserOptions& options) {
+  const Matrix6d floor = informationOf(options.loop_sigma_rotation, options.loop_sigma_translation);
+  std::vector<double> errors;
+  errors.reserve(snapshot.loops.size());
+  for (const LoopConstraint& loop : snapshot.loops) {
+    const auto from = static_cast<std::size_t>(places.key_frames.of(loop.from, "loops.from"));
+    const auto to = static_cast<std::size_t>(places.key_frames.of(loop.to, "loops.to"));
+    const Eigen::Isometry3d error = poses[to] * poses[from].inverse() * loop.to_from.inverse();
+    const Eigen::AngleAxisd turn(error.linear());
+    Eigen::Matrix<double, 6, 1> delta;
+    delta << turn.angle() * turn.axis(), error.translation();
+    errors.push_back(delta.dot(withFloor(loop.information, floor) * delta));
+  }
+  return errors;
+}
+
+/// The worst of the loops that are contradicted by too much.
+std::optional<std::size_t> refusedOf(const std::vector<double>& errors, double largest) {
+  const auto worst = std::max_element(errors.begin(), errors.end());
+  if (worst == errors.end() || *worst <= largest) {
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(worst - errors.begin());
+}
+
 }  // namespace
 
 LoopClosure closeLoops(const LoopSnapshot& snapshot, const LoopCloserOptions& options) {
@@ -197,12 +290,28 @@ LoopClosure closeLoops(const LoopSnapshot& snapshot, const LoopCloserOptions& op
   closure.pose_graph = optimizePoseGraph(graphOf(snapshot, places, options), options.pose_graph);
   std::vector<Eigen::Isometry3d> poses = closure.pose_graph.nodes;
   std::vector<Eigen::Vector3d> points = carriedPoints(snapshot, places, poses);
-  const std::vector<int> into = fusedPoints(snapshot, places);
+  std::vector<int> into = fusedPoints(snapshot, places);
   if (options.bundle_adjustment) {
     closure.bundle = adjustBundle(bundleOf(snapshot, places, poses, points, into), options.bundle);
     closure.inlier = closure.bundle.inlier;
     poses = closure.bundle.poses;
     points = closure.bundle.points;
+  }
+  closure.loop_error = loopErrors(snapshot, places, poses, options);
+  const bool stopped = closure.bundle.termination == BundleTermination::kStopped;
+  if (!stopped) {
+    closure.refused = refusedOf(closure.loop_error, options.max_loop_error);
+  }
+  closure.closed = !stopped && !closure.refused;
+  if (!closure.closed) {
+    closure.inlier.clear();
+    std::iota(into.begin(), into.end(), 0);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = snapshot.key_frames[i].camera_from_world;
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] = snapshot.points[i].position;
+    }
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Isometry3d before = snapshot.key_frames[i].camera_from_world.inverse();

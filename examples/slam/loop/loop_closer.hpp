@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,6 +70,9 @@ struct LoopCloserOptions {
   PoseGraphOptions pose_graph;
   bool bundle_adjustment = true;  ///< Global, after the pose graph.
   BundleOptions bundle;
+  /// A loop that the corrected map contradicts by more than this is refused: squared error of its
+  /// relative pose (sigma^2), 99.9 % of chi2(6).
+  double max_loop_error = 22.458;
 };
 
 /// A key frame's corrected pose.
@@ -88,13 +92,22 @@ struct LoopClosure {
   /// Per sighting: 1 = agrees with the bundle adjustment. Empty without one.
   std::vector<std::uint8_t> inlier;
   double largest_correction = 0.0;  ///< Of a key frame's centre (m).
-  PoseGraphSolution pose_graph;     ///< Squared errors: loops first, in their order.
+  std::vector<double> loop_error;   ///< Per loop, at `key_frames` (sigma^2).
+  /// Place in the snapshot's loops of the one that is refused, the worst.
+  std::optional<std::size_t> refused;
+  /// False where a loop is refused, or the adjustment that would tell was stopped: key frames and
+  /// points are as given then, and nothing is fused.
+  bool closed = true;
+  PoseGraphSolution pose_graph;  ///< Squared errors: loops first, in their order.
   BundleSolution bundle;
 };
 
 /// Corrects a map after a loop: optimises the pose graph of covisibility and loops, carries each
 /// point along with its anchor key frame, makes one of the points that the loops call one, then
 /// adjusts everything (global bundle adjustment), in which the fused points hold the loop shut.
+///
+/// A false loop asks for more bending than the observations along the way allow, and is open again
+/// after the adjustment. So a loop that the result does not reproduce is refused.
 ///
 /// The live map may have grown meanwhile. Then what is not in the snapshot moves with its
 /// neighbour: T_new = T_old T_neighbour,old^-1 T_neighbour,corrected.

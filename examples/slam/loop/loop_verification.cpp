@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
 
 #include "slam/features/hamming_distance.hpp"
 #include "slam/loop/pixel_grid.hpp"
@@ -27,7 +29,52 @@ SightedPoint sighted(const LoopKeyFrame& key_frame, std::size_t i) {
 struct GuidedSearch {
   std::vector<std::pair<int, int>> pairs;  ///< One-to-one, by `from`.
   double support = 0.0;
+  double coverage = 0.0;
   double depth_agreement = 0.0;
+};
+
+using Cell = std::pair<int, int>;
+
+Cell cellOf(double u, double v, double side) {
+  // Far outside any image is one place, too.
+  const auto place = [side](double pixel) {
+    return static_cast<int>(std::floor(std::clamp(pixel, -1e6, 1e6) / side));
+  };
+  return {place(u), place(v)};
+}
+
+/// Where points should be seen again, and whether they are, by squares of the image.
+class Coverage {
+ public:
+  explicit Coverage(const LoopVerificationOptions& options) : options_(options) {}
+
+  void expect(const Cell& cell) { ++squares_[cell].expected; }
+  void find(const Cell& cell) { ++squares_[cell].found; }
+
+  double share() const {
+    std::size_t asked = 0;
+    std::size_t answered = 0;
+    for (const auto& [cell, square] : squares_) {
+      if (square.expected >= options_.cell_points) {
+        ++asked;
+        answered += static_cast<double>(square.found) >=
+                            std::max(1.0, options_.min_square_support *
+                                              static_cast<double>(square.expected))
+                        ? 1
+                        : 0;
+      }
+    }
+    return asked == 0 ? 0.0 : static_cast<double>(answered) / static_cast<double>(asked);
+  }
+
+ private:
+  struct Square {
+    std::size_t expected = 0;
+    std::size_t found = 0;
+  };
+
+  const LoopVerificationOptions& options_;
+  std::map<Cell, Square> squares_;
 };
 
 /// Nearest key point with a depth around a pixel.
@@ -77,6 +124,8 @@ GuidedSearch searchAround(const LoopKeyFrame& from, const LoopKeyFrame& to,
                           const LoopVerificationOptions& options) {
   const PixelGrid grid(to.points, std::max(options.radius, options.neighbour_radius));
   std::vector<Claim> claims(to.points.size());
+  std::vector<Cell> cells(from.points.size());
+  Coverage coverage(options);
   std::size_t visible = 0;
   std::size_t compared = 0;
   std::size_t agreeing = 0;
@@ -91,6 +140,8 @@ GuidedSearch searchAround(const LoopKeyFrame& from, const LoopKeyFrame& to,
       continue;
     }
     ++visible;
+    cells[i] = cellOf(pixel.x(), pixel.y(), options.cell);
+    coverage.expect(cells[i]);
     if (const auto j = neighbourOf(to, grid, pixel, options.neighbour_radius)) {
       const double seen = to.points.depth[*j];
       const double tolerance =
@@ -108,10 +159,12 @@ GuidedSearch searchAround(const LoopKeyFrame& from, const LoopKeyFrame& to,
   for (std::size_t j = 0; j < claims.size(); ++j) {
     if (claims[j].from >= 0) {
       search.pairs.emplace_back(claims[j].from, static_cast<int>(j));
+      coverage.find(cells[static_cast<std::size_t>(claims[j].from)]);
     }
   }
   std::sort(search.pairs.begin(), search.pairs.end());
   search.support = shareOf(search.pairs.size(), visible);
+  search.coverage = coverage.share();
   search.depth_agreement = shareOf(agreeing, compared);
   return search;
 }
@@ -146,14 +199,10 @@ PoseRefinementResult refine(const LoopKeyFrame& from, const LoopKeyFrame& to,
 
 /// Squares of the image with a point in them.
 std::size_t cellsOf(const KeyPoints& points, const std::vector<int>& chosen, double cell) {
-  std::set<std::pair<int, int>> cells;
+  std::set<Cell> cells;
   for (const int i : chosen) {
     const auto k = static_cast<std::size_t>(i);
-    // Far outside any image is one place, too.
-    const auto place = [cell](double pixel) {
-      return static_cast<int>(std::floor(std::clamp(pixel, -1e6, 1e6) / cell));
-    };
-    cells.emplace(place(points.u[k]), place(points.v[k]));
+    cells.insert(cellOf(points.u[k], points.v[k], cell));
   }
   return cells.size();
 }
@@ -168,6 +217,9 @@ LoopVerdict judge(const LoopVerification& found, const LoopVerificationOptions& 
   if (found.support < options.min_support) {
     return LoopVerdict::kLittleSupport;
   }
+  if (found.coverage < options.min_coverage) {
+    return LoopVerdict::kLocalSupport;
+  }
   return found.depth_agreement < options.min_depth_agreement ? LoopVerdict::kDepthDisagrees
                                                              : LoopVerdict::kAccepted;
 }
@@ -177,6 +229,8 @@ void checkOptions(const LoopVerificationOptions& options) {
   requirePositive("options.neighbour_radius", options.neighbour_radius);
   requirePositive("options.cell", options.cell);
   requireNotNegative("options.depth_tolerance", options.depth_tolerance);
+  require(options.cell_points >= 1, "options.cell_points", std::to_string(options.cell_points),
+          "at least 1");
 }
 
 }  // namespace
@@ -197,6 +251,8 @@ const char* toString(LoopVerdict verdict) noexcept {
       return "clustered";
     case LoopVerdict::kLittleSupport:
       return "little support";
+    case LoopVerdict::kLocalSupport:
+      return "local support";
     case LoopVerdict::kDepthDisagrees:
       return "depth disagrees";
     case LoopVerdict::kOutvoted:
@@ -253,6 +309,7 @@ LoopVerification verifyLoop(const LoopKeyFrame& from, const LoopKeyFrame& to,
   // Once more, from where the motion has moved to.
   const GuidedSearch seen = searchAround(from, to, result.to_from, camera, options);
   result.support = seen.support;
+  result.coverage = seen.coverage;
   result.depth_agreement = seen.depth_agreement;
   result.cells = std::min(cellsOf(from.points, of_from, options.cell),
                           cellsOf(to.points, of_to, options.cell));

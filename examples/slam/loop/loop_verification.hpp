@@ -27,6 +27,7 @@ enum class LoopVerdict : std::uint8_t {
   kTooFewInliers,   ///< Too few of them agree with one motion.
   kClustered,       ///< They lie too close together in an image.
   kLittleSupport,   ///< Too many points that should be seen again are not.
+  kLocalSupport,    ///< What is seen again lies together: a thing that is in both, not the place.
   kDepthDisagrees,  ///< What is seen where they should be has another depth.
   kOutvoted,        ///< Good, but another candidate of the same key frame is better.
 };
@@ -43,9 +44,13 @@ struct LoopVerificationOptions {
   int max_distance = 80;         ///< Of its descriptors (bits of 256).
   float cell = 80.0f;            ///< Side of the squares that measure the spread (px, > 0).
   std::size_t min_cells = 8;     ///< Squares with an inlier, in either image.
-  /// Of the points that should be seen again this share must be; a poster that hangs in two rooms
-  /// brings its own points only.
-  double min_support = 0.15;
+  double min_support = 0.15;     ///< Of the points that should be seen again this share must be.
+  /// And in this share of the squares of side `cell` which hold at least `cell_points` of them, a
+  /// share of `min_square_support` must be; a poster that hangs in two rooms brings its own
+  /// squares only, however many points it has.
+  double min_coverage = 0.5;
+  std::size_t cell_points = 3;  ///< >= 1
+  double min_square_support = 0.1;
   /// Of the points with a key point within `neighbour_radius` of where they should be, this share
   /// must have its depth, within 3 sigma and `depth_tolerance` of it.
   double min_depth_agreement = 0.6;
@@ -60,6 +65,7 @@ struct LoopVerification {
   std::size_t inliers = 0;       ///< That agree with the final motion.
   std::size_t cells = 0;         ///< The smaller of the two images' counts.
   double support = 0.0;          ///< 0..1
+  double coverage = 0.0;         ///< 0..1
   double depth_agreement = 0.0;  ///< 0..1
   Eigen::Isometry3d to_from = Eigen::Isometry3d::Identity();  ///< Camera `to` from camera `from`.
   /// Of delta = (rotation vector (rad), translation (m)), a motion in the frame of `to` that leads

@@ -127,7 +127,8 @@ void printQuantiles(const char* name, const std::vector<double>& values) {
 struct Measurement {
   std::vector<double> query_ms, verify_ms, relocalize_ms;
   std::vector<double> relative_same, relative_other;  // best score to that of the neighbour
-  std::vector<double> support_same, support_other, inliers_other, depth_same, depth_other;
+  std::vector<double> support_same, support_other, coverage_same, inliers_other, depth_same,
+      depth_other;
   std::vector<double> translation_error, relocalization_error;
   std::map<std::string, int> verdicts_same, verdicts_other;
   int queries = 0, first_right = 0, among_five = 0, relocalized = 0, with_revisit = 0;
@@ -150,6 +151,7 @@ void measureCandidate(const Keyed& query, const Keyed& other, double overlap, do
     ++m.verdicts_same[toString(found.verdict)];
     m.relative_same.push_back(relative);
     m.support_same.push_back(found.support);
+    m.coverage_same.push_back(found.coverage);
     m.depth_same.push_back(found.depth_agreement);
   } else if (overlap <= kOther) {
     ++m.verdicts_other[toString(found.verdict)];
@@ -243,6 +245,7 @@ void print(const Measurement& m) {
   printQuantiles("relative score, other", m.relative_other);
   printQuantiles("support, same", m.support_same);
   printQuantiles("support, other", m.support_other);
+  printQuantiles("coverage, same", m.coverage_same);
   printQuantiles("inliers, other", m.inliers_other);
   printQuantiles("depth agreement, same", m.depth_same);
   printQuantiles("depth agreement, other", m.depth_other);

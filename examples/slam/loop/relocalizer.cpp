@@ -179,6 +179,9 @@ RelocalizationResult relocalize(const LoopKeyFrame& frame, const PlaceIndex& ind
       checkLoopKeyFrame(found->second, "key_frames");
       requireRigid("key_frames.camera_from_world", found->second.camera_from_world);
       tryKeyFrame(found->second, query, camera, options, result);
+      if (result.camera_from_world && result.most_inliers >= options.enough_inliers) {
+        break;  // the others see less of the same
+      }
     }
   }
   return result;

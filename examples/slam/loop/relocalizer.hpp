@@ -23,6 +23,8 @@ struct RelocalizerOptions {
   DescriptorMatcherOptions matcher;
   RigidRansacOptions ransac;
   std::size_t min_inliers = 20;  ///< For a pose.
+  /// Key frames are tried, best first, until one gives a pose with so many inliers.
+  std::size_t enough_inliers = 100;
   /// Fewer matches with a depth in both frames than this, and the pose comes from pixels alone
   /// (perspective n-point).
   std::size_t min_depth_pairs = 30;
@@ -53,8 +55,8 @@ struct RelocalizationResult {
 /// Where a frame without a pose is: asks the index for key frames that look alike, matches, finds
 /// the pose by 3D-3D RANSAC or, without depths, by OpenCV's perspective-n-point RANSAC (which draws
 /// the same samples each time), and refines it by refinePose(). The key frame with the most inliers
-/// counts, of equal ones the one that looks more alike. The pose may be in another part of the map
-/// than the last one known; the caller decides whether to believe it.
+/// of those that were tried counts, of equal ones the one that looks more alike. The pose may be in
+/// another part of the map than the last one known; the caller decides whether to believe it.
 ///
 /// @param frame its pose, id, map points and covisibility are not looked at; map_point may be
 /// empty.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/mapping/loop_closing.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
-
-#include "slam/mapping/map_snapshot.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -31,8 +31,8 @@ LoopClosing::Answer LoopClosing::run(State& state, const LoopClosingOptions& opt
     }
     return state.detector.process(std::move(detect->key_frame));
   }
-  if (const auto* close = std::get_if<CloseJob>(&job)) {
-    return toCorrection(*close->snapshot, closeLoops(*close->snapshot, options.closer));
+  if (const auto* closure = std::get_if<CloseJob>(&job)) {
+    return close(closure->map, options.closer);
   }
   const RelocalizationResult found =
       slam::relocalize(std::get<RelocalizeJob>(job).frame, state.detector.index(),
@@ -45,6 +45,21 @@ LoopClosing::Answer LoopClosing::run(State& state, const LoopClosingOptions& opt
         state.detector.keyFrames().at(found.key_frame).camera_from_world.inverse();
   }
   return relocalized;
+}
+
+LoopClosing::Closed LoopClosing::close(const MapCopy& map, const LoopCloserOptions& options) {
+  Closed closed;
+  try {
+    const LoopSnapshot snapshot = toSnapshot(map);
+    const LoopClosure closure = closeLoops(snapshot, options);
+    closed.refused = closure.refused;
+    if (closure.closed) {
+      closed.correction = toCorrection(snapshot, closure);
+    }
+  } catch (...) {
+    closed.error = std::current_exception();  // with what it is the error of
+  }
+  return closed;
 }
 
 std::vector<std::size_t> LoopClosing::newlyCulled(const Map& map) {
@@ -63,6 +78,7 @@ void LoopClosing::process(const Map& map) {
   if (!options_.enabled) {
     return;
   }
+  copier_.remember(map);
   if (worker_.pending() >= kQueue) {
     ++left_out_;
     return;
@@ -78,22 +94,81 @@ void LoopClosing::note(const LoopReport& report, const Map& map) {
   const auto timeOf = [&](std::size_t id) { return map.keyFrames()[id].frame.timestamp; };
   for (const LoopCandidate& candidate : report.candidates) {
     const LoopVerification& verification = candidate.verification;
-    events_.push_back(
-        {timeOf(report.id), timeOf(candidate.id), candidate.score, verification.inliers,
-         verification.verdict == LoopVerdict::kAccepted ? "" : toString(verification.verdict)});
+    LoopEvent event{timeOf(report.id), timeOf(candidate.id), candidate.score, verification.inliers,
+                    toString(verification.verdict)};
+    if (verification.verdict == LoopVerdict::kAccepted && report.constraint) {
+      event.refusal.clear();
+      loops_.push_back({*report.constraint, event, false});
+    } else {
+      events_.push_back(event);
+    }
   }
 }
 
 void LoopClosing::submitClosure(const Map& map) {
-  closing_ = true;
-  worker_.submit(CloseJob{std::make_shared<const LoopSnapshot>(makeLoopSnapshot(map, loops_))});
+  std::vector<std::size_t> one_now;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    if (!loops_[i].closed && !survivingLoop(map, loops_[i].constraint)) {
+      one_now.push_back(i);
+    }
+  }
+  forget(one_now, "both ends are one key frame");
+  std::vector<LoopConstraint> constraints;
+  bool anything_new = false;
+  submitted_.clear();
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    if (const auto constraint = survivingLoop(map, loops_[i].constraint)) {
+      constraints.push_back(*constraint);
+      submitted_.push_back(i);
+      anything_new = anything_new || !loops_[i].closed;
+    }
+  }
+  if (anything_new) {
+    closing_ = true;
+    worker_.submit(CloseJob{copier_.copy(map, std::move(constraints))});
+  }
+}
+
+/// @param loops places, in ascending order.
+void LoopClosing::forget(const std::vector<std::size_t>& loops, const std::string& refusal) {
+  for (auto place = loops.rbegin(); place != loops.rend(); ++place) {
+    const auto loop = loops_.begin() + static_cast<std::ptrdiff_t>(*place);
+    events_.push_back(loop->event);
+    events_.back().refusal = refusal;
+    loops_.erase(loop);
+  }
+}
+
+std::optional<MapCorrection> LoopClosing::takeUp(Closed closed) {
+  closing_ = false;
+  if (closed.correction) {
+    for (const std::size_t place : submitted_) {
+      if (!std::exchange(loops_[place].closed, true)) {
+        events_.push_back(loops_[place].event);
+      }
+    }
+    return std::move(closed.correction);
+  }
+  std::vector<std::size_t> refused;
+  if (closed.refused) {
+    refused.push_back(submitted_[*closed.refused]);
+    due_ = true;  // for those that are left
+  } else {
+    std::copy_if(submitted_.begin(), submitted_.end(), std::back_inserter(refused),
+                 [this](std::size_t place) { return !loops_[place].closed; });
+  }
+  forget(refused, closed.refused ? "contradicts the map"
+                                 : (closed.error ? "closing failed" : "closing was stopped"));
+  if (closed.error) {
+    std::rethrow_exception(closed.error);
+  }
+  return std::nullopt;
 }
 
 std::optional<MapCorrection> LoopClosing::takeUp(Answer answer, const Map& map) {
   frames_waited_ = 0;
-  if (auto* correction = std::get_if<MapCorrection>(&answer)) {
-    closing_ = false;
-    return std::move(*correction);
+  if (auto* closed = std::get_if<Closed>(&answer)) {
+    return takeUp(std::move(*closed));
   }
   if (const auto* relocalized = std::get_if<Relocalized>(&answer)) {
     relocalized_ = *relocalized;
@@ -102,7 +177,6 @@ std::optional<MapCorrection> LoopClosing::takeUp(Answer answer, const Map& map) 
   const auto& report = std::get<LoopReport>(answer);
   note(report, map);
   if (report.constraint) {
-    loops_.push_back(*report.constraint);
     if (closing_) {
       due_ = true;
     } else {
@@ -110,6 +184,11 @@ std::optional<MapCorrection> LoopClosing::takeUp(Answer answer, const Map& map) 
     }
   }
   return std::nullopt;
+}
+
+std::size_t LoopClosing::loopsClosed() const noexcept {
+  return static_cast<std::size_t>(
+      std::count_if(loops_.begin(), loops_.end(), [](const Loop& loop) { return loop.closed; }));
 }
 
 std::optional<MapCorrection> LoopClosing::poll(const Map& map) {
@@ -131,12 +210,15 @@ std::optional<MapCorrection> LoopClosing::poll(const Map& map) {
 }
 
 std::optional<MapCorrection> LoopClosing::finish(const Map& map) {
-  if (due_ && !closing_) {
-    due_ = false;
-    submitClosure(map);
-  }
   std::optional<MapCorrection> latest;
-  while (worker_.pending() > 0 && !latest) {
+  while (!latest) {
+    if (due_ && !closing_) {
+      due_ = false;
+      submitClosure(map);
+    }
+    if (worker_.pending() == 0) {
+      break;
+    }
     latest = takeUp(worker_.take(), map);
   }
   return latest;

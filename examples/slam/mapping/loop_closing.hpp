@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "slam/loop/loop_detector.hpp"
 #include "slam/loop/relocalizer.hpp"
 #include "slam/mapping/map.hpp"
+#include "slam/mapping/map_snapshot.hpp"
 
 namespace hmcdyn::slam {
 
@@ -26,13 +28,13 @@ struct LoopClosingOptions {
   std::size_t delay = 2;
 };
 
-/// A loop candidate in the terms of time.
+/// A loop candidate in the terms of time, once its fate is known.
 struct LoopEvent {
   double timestamp = 0.0;          ///< Of the current key frame (s).
   double matched_timestamp = 0.0;  ///< Of the older one (s).
   double score = 0.0;
   std::size_t inliers = 0;
-  std::string refusal;  ///< Empty = accepted.
+  std::string refusal;  ///< Empty = accepted, and closed.
 };
 
 /// Place recognition, loop detection and correction on a thread of their own. The thread owns the
@@ -46,9 +48,12 @@ class LoopClosing {
 
   /// Call once a frame. A correction is of the whole map: one of a local adjustment that was begun
   /// before it is void.
+  /// Rethrows what the thread's work threw; what threw is over and done with then, and the next
+  /// call goes on: the loops that could not be closed are forgotten.
   std::optional<MapCorrection> poll(const Map& map);
 
-  /// Waits for what is outstanding, and for the correction that it leads to.
+  /// Waits for what is outstanding, and for the correction that it leads to; call it until it has
+  /// none. Rethrows as poll() does.
   std::optional<MapCorrection> finish(const Map& map);
 
   /// Where a lost frame is; waits for the thread. Nothing where no place looks alike.
@@ -57,7 +62,7 @@ class LoopClosing {
   /// Candidates since the last call.
   std::vector<LoopEvent> takeEvents();
 
-  std::size_t loopsClosed() const noexcept { return loops_.size(); }
+  std::size_t loopsClosed() const noexcept;
   std::size_t keyFramesLeftOut() const noexcept { return left_out_; }
 
  private:
@@ -67,7 +72,14 @@ class LoopClosing {
     std::vector<std::size_t> culled;  ///< Key frames to forget.
   };
   struct CloseJob {
-    std::shared_ptr<const LoopSnapshot> snapshot;
+    MapCopy map;
+  };
+  /// What became of a CloseJob: a correction, or a loop that is refused (place in the snapshot's
+  /// loops), or an error, or none of these where it was stopped.
+  struct Closed {
+    std::optional<MapCorrection> correction;
+    std::optional<std::size_t> refused;
+    std::exception_ptr error;
   };
   struct RelocalizeJob {
     LoopKeyFrame frame;
@@ -78,18 +90,30 @@ class LoopClosing {
     std::optional<Eigen::Isometry3d> from_key_frame;
   };
   using Job = std::variant<DetectJob, CloseJob, RelocalizeJob>;
-  using Answer = std::variant<LoopReport, MapCorrection, Relocalized>;
+  using Answer = std::variant<LoopReport, Closed, Relocalized>;
+
+  /// A loop that was found, and what is to be said of it.
+  struct Loop {
+    LoopConstraint constraint;
+    LoopEvent event;
+    bool closed = false;
+  };
 
   static Answer run(State& state, const LoopClosingOptions& options, Job job);
+  static Closed close(const MapCopy& map, const LoopCloserOptions& options);
 
   std::optional<MapCorrection> takeUp(Answer answer, const Map& map);
+  std::optional<MapCorrection> takeUp(Closed closed);
   void note(const LoopReport& report, const Map& map);
   void submitClosure(const Map& map);
+  void forget(const std::vector<std::size_t>& loops, const std::string& refusal);
   std::vector<std::size_t> newlyCulled(const Map& map);
 
   LoopClosingOptions options_;
-  std::vector<LoopConstraint> loops_;
+  std::vector<Loop> loops_;             ///< Those that were not refused.
+  std::vector<std::size_t> submitted_;  ///< Places in loops_ of the loops that are being closed.
   std::vector<LoopEvent> events_;
+  MapCopier copier_;
   std::optional<Relocalized> relocalized_;
   std::vector<bool> forgotten_;  ///< Key frames that the thread need not know any more.
   std::size_t frames_waited_ = 0;

@@ -272,6 +272,13 @@ void Map::cull() {
   cullKeyFrames();
 }
 
+int Map::survivorOf(int key_frame) const {
+  while (key_frames_[static_cast<std::size_t>(key_frame)].removed) {
+    key_frame = key_frames_[static_cast<std::size_t>(key_frame)].anchor;
+  }
+  return key_frame;
+}
+
 Eigen::Isometry3d Map::poseOf(int key_frame) const {
   Eigen::Isometry3d from_root = Eigen::Isometry3d::Identity();
   const KeyFrame* entry = &key_frames_[static_cast<std::size_t>(key_frame)];

@@ -100,6 +100,9 @@ class Map {
   /// latest one in it, and its points with it.
   void apply(const MapCorrection& correction);
 
+  /// The key frame itself, or of a removed one that which it hangs on.
+  int survivorOf(int key_frame) const;
+
   /// The pose of a key frame, of a removed one by what it hangs on.
   Eigen::Isometry3d poseOf(int key_frame) const;
 

@@ -2,6 +2,8 @@
 #include "slam/mapping/map_snapshot.hpp"
 
 #include <cstddef>
+#include <numeric>
+#include <utility>
 
 #include "slam/mapping/local_bundle.hpp"
 
@@ -14,35 +16,113 @@ bool isBackground(const Frame& frame, std::size_t key_point) {
          (frame.label[key_point] == PointLabel::kStatic && frame.in_person[key_point] == 0);
 }
 
-LoopSnapshot::Sighting sightingOf(const Frame& frame, const Observation& seen, int point) {
+std::shared_ptr<const KeyFrameSightings> sightingsOf(const Frame& frame) {
+  return std::make_shared<const KeyFrameSightings>(
+      KeyFrameSightings{frame.points, frame.sigma, frame.weight});
+}
+
+/// Which key point of which key frame sees each map point, key frames in order.
+class Observers {
+ public:
+  struct Observer {
+    std::size_t key_frame = 0;  // place in the copy
+    std::size_t key_point = 0;
+  };
+
+  explicit Observers(const MapCopy& copy) : first_(copy.point_position.size() + 1, 0) {
+    forEach(copy, [this](std::size_t point, const Observer&) { ++first_[point + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    observers_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    forEach(copy, [&](std::size_t point, const Observer& observer) {
+      observers_[next[point]++] = observer;
+    });
+  }
+
+  Span<const Observer> of(std::size_t point) const {
+    return {observers_.data() + first_[point], first_[point + 1] - first_[point]};
+  }
+
+ private:
+  template <class Visit>
+  static void forEach(const MapCopy& copy, const Visit& visit) {
+    for (std::size_t k = 0; k < copy.key_frames.size(); ++k) {
+      const std::vector<int>& points = copy.key_frames[k].map_point;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (points[i] != kNoMapPoint) {
+          visit(static_cast<std::size_t>(points[i]), Observer{k, i});
+        }
+      }
+    }
+  }
+
+  std::vector<std::size_t> first_;
+  std::vector<Observer> observers_;
+};
+
+LoopSnapshot::Sighting sightingOf(const MapCopy& copy, const Observers::Observer& observer,
+                                  std::size_t point) {
+  const MapCopy::KeyFrameCopy& key_frame = copy.key_frames[observer.key_frame];
   LoopSnapshot::Sighting sighting;
-  sighting.key_frame = static_cast<std::size_t>(seen.key_frame);
-  sighting.point = point;
-  sighting.u = frame.points.u[seen.key_point];
-  sighting.v = frame.points.v[seen.key_point];
-  sighting.sigma = frame.sigma[seen.key_point];
-  sighting.depth = frame.points.depth[seen.key_point];
-  sighting.weight = frame.weight[seen.key_point];
+  sighting.key_frame = key_frame.id;
+  sighting.point = static_cast<int>(point);
+  sighting.u = key_frame.seen->points.u[observer.key_point];
+  sighting.v = key_frame.seen->points.v[observer.key_point];
+  sighting.sigma = key_frame.seen->sigma[observer.key_point];
+  sighting.depth = key_frame.seen->points.depth[observer.key_point];
+  sighting.weight = key_frame.seen->weight[observer.key_point];
   return sighting;
 }
 
-void addPoints(const Map& map, LoopSnapshot& snapshot) {
-  for (std::size_t i = 0; i < map.points().size(); ++i) {
-    const MapPoint& point = map.points()[i];
-    if (point.removed || point.observations.empty()) {
-      continue;
+void addPoints(const MapCopy& copy, const Observers& observers, LoopSnapshot& snapshot) {
+  for (std::size_t i = 0; i < copy.point_position.size(); ++i) {
+    const auto seen_by = observers.of(i);
+    if (seen_by.size() == 0) {
+      continue;  // removed, or on its way there
     }
-    const int id = static_cast<int>(i);
     snapshot.points.push_back(
-        {id, point.position, static_cast<std::size_t>(point.observations.front().key_frame)});
-    if (point.belief.log_odds < map.options().belief.trust) {
-      continue;
-    }
-    for (const Observation& seen : point.observations) {
-      snapshot.sightings.push_back(
-          sightingOf(map.keyFrames()[static_cast<std::size_t>(seen.key_frame)].frame, seen, id));
+        {static_cast<int>(i), copy.point_position[i], copy.key_frames[seen_by[0].key_frame].id});
+    if (copy.point_trusted[i] != 0) {
+      for (const Observers::Observer& observer : seen_by) {
+        snapshot.sightings.push_back(sightingOf(copy, observer, i));
+      }
     }
   }
+}
+
+/// Pairs of key frames and how many points they share.
+void addCovisibility(const MapCopy& copy, const Observers& observers, LoopSnapshot& snapshot) {
+  for (std::size_t k = 0; k < copy.key_frames.size(); ++k) {
+    std::vector<int> shared(k, 0);
+    for (const int point : copy.key_frames[k].map_point) {
+      if (point == kNoMapPoint) {
+        continue;
+      }
+      for (const Observers::Observer& observer : observers.of(static_cast<std::size_t>(point))) {
+        if (observer.key_frame < k) {
+          ++shared[observer.key_frame];
+        }
+      }
+    }
+    for (std::size_t other = 0; other < k; ++other) {
+      if (shared[other] > 0) {
+        snapshot.covisibility.push_back(
+            {copy.key_frames[other].id, copy.key_frames[k].id, shared[other]});
+      }
+    }
+  }
+}
+
+/// What a small motion (rotation vector, translation) is on the other side of a rigid one.
+Eigen::Matrix<double, 6, 6> adjointOf(const Eigen::Isometry3d& motion) {
+  const Eigen::Vector3d& t = motion.translation();
+  Eigen::Matrix3d cross;
+  cross << 0.0, -t.z(), t.y(), t.z(), 0.0, -t.x(), -t.y(), t.x(), 0.0;
+  Eigen::Matrix<double, 6, 6> adjoint = Eigen::Matrix<double, 6, 6>::Zero();
+  adjoint.topLeftCorner<3, 3>() = motion.linear();
+  adjoint.bottomRightCorner<3, 3>() = motion.linear();
+  adjoint.bottomLeftCorner<3, 3>() = cross * motion.linear();
+  return adjoint;
 }
 
 }  // namespace
@@ -77,27 +157,72 @@ LoopKeyFrame makeLoopKeyFrame(const Map& map, int key_frame) {
   return copy;
 }
 
-LoopSnapshot makeLoopSnapshot(const Map& map, const std::vector<LoopConstraint>& loops) {
-  LoopSnapshot snapshot;
-  snapshot.camera = map.camera();
+std::optional<LoopConstraint> survivingLoop(const Map& map, const LoopConstraint& loop) {
+  const int from = map.survivorOf(static_cast<int>(loop.from));
+  const int to = map.survivorOf(static_cast<int>(loop.to));
+  if (from == to) {
+    return std::nullopt;
+  }
+  const auto fromSurvivor = [&map](std::size_t culled, int survivor) {
+    return map.poseOf(static_cast<int>(culled)) * map.poseOf(survivor).inverse();
+  };
+  LoopConstraint surviving = loop;
+  surviving.from = static_cast<std::size_t>(from);
+  surviving.to = static_cast<std::size_t>(to);
+  const Eigen::Isometry3d to_from_survivor = fromSurvivor(loop.to, to);
+  surviving.to_from = to_from_survivor.inverse() * loop.to_from * fromSurvivor(loop.from, from);
+  const Eigen::Matrix<double, 6, 6> moved = adjointOf(to_from_survivor);
+  surviving.information = moved.transpose() * loop.information * moved;
+  if (from != static_cast<int>(loop.from) || to != static_cast<int>(loop.to)) {
+    surviving.key_points.clear();  // they were the culled ones'
+  }
+  return surviving;
+}
+
+void MapCopier::remember(const Map& map) {
+  const std::size_t known = seen_.size();
+  seen_.resize(map.keyFrames().size());
+  for (std::size_t k = known; k < seen_.size(); ++k) {
+    if (!map.keyFrames()[k].removed) {
+      seen_[k] = sightingsOf(map.keyFrames()[k].frame);
+    }
+  }
+}
+
+MapCopy MapCopier::copy(const Map& map, std::vector<LoopConstraint> loops) {
+  remember(map);
+  MapCopy copy;
+  copy.camera = map.camera();
+  copy.loops = std::move(loops);
+  copy.key_frames.reserve(map.keyFrames().size());
   for (std::size_t k = 0; k < map.keyFrames().size(); ++k) {
-    const int key_frame = static_cast<int>(k);
-    if (map.keyFrames()[k].removed) {
-      continue;
-    }
-    snapshot.key_frames.push_back({k, map.poseOf(key_frame)});
-    for (const auto& [other, shared] : map.covisible(key_frame)) {
-      if (other < key_frame) {
-        snapshot.covisibility.push_back({static_cast<std::size_t>(other), k, shared});
-      }
+    const KeyFrame& key_frame = map.keyFrames()[k];
+    if (key_frame.removed) {
+      seen_[k].reset();
+    } else {
+      copy.key_frames.push_back(
+          {k, key_frame.frame.camera_from_world, seen_[k], key_frame.frame.map_point});
     }
   }
-  for (const LoopConstraint& loop : loops) {
-    if (!map.keyFrames()[loop.from].removed && !map.keyFrames()[loop.to].removed) {
-      snapshot.loops.push_back(loop);
-    }
+  copy.point_position.reserve(map.points().size());
+  copy.point_trusted.reserve(map.points().size());
+  for (const MapPoint& point : map.points()) {
+    copy.point_position.push_back(point.position);
+    copy.point_trusted.push_back(point.belief.log_odds >= map.options().belief.trust ? 1 : 0);
   }
-  addPoints(map, snapshot);
+  return copy;
+}
+
+LoopSnapshot toSnapshot(const MapCopy& copy) {
+  LoopSnapshot snapshot;
+  snapshot.camera = copy.camera;
+  snapshot.loops = copy.loops;
+  for (const MapCopy::KeyFrameCopy& key_frame : copy.key_frames) {
+    snapshot.key_frames.push_back({key_frame.id, key_frame.camera_from_world});
+  }
+  const Observers observers(copy);
+  addPoints(copy, observers, snapshot);
+  addCovisibility(copy, observers, snapshot);
   return snapshot;
 }
 

@@ -38,7 +38,8 @@ int run(int argc, char** argv) {
     return *code;
   }
   try {
-    const hmcdyn::slam::StopRequest stop;  // Ctrl-C finishes what there is
+    const hmcdyn::slam::StopRequest stop;             // Ctrl-C finishes what there is
+    options.loops.closer.bundle.stop = &stop.flag();  // but for minutes of global adjustment
     const nlohmann::json summary = hmcdyn::slam::runSlam(options, [&] { return stop.requested(); });
     printSummary(summary, options.output);
     const nlohmann::json& counts = summary.at("counts");

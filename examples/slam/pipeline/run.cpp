@@ -191,6 +191,7 @@ nlohmann::json finish(Run& run) {
   const SlamOptions& options = run.options;
   run.pipeline.finish();
   run.writer.releaseReserve();
+  run.writing.attempt([&] { run.writer.writeLoops(run.pipeline.map(), run.pipeline.loops()); });
   run.writing.attempt([&] { run.writer.finish(run.pipeline.trajectory(), run.pipeline.map()); });
   if (run.dense) {
     const FusionResult map = run.dense->fuse(run.pipeline.map());

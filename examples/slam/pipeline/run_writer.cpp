@@ -92,6 +92,17 @@ void RunWriter::write(const FrameOutcome& outcome, const Map& map, LoopClosing& 
   if (outcome.tracking.new_key_frame) {
     key_frames_.write({timestamp, outcome.tracking.camera_from_world});
   }
+  writeLoops(map, loops);
+  if (key_points_) {
+    writeKeyPoints(outcome);
+  }
+  writePicture(outcome);
+  if (reports_) {
+    record(outcome);
+  }
+}
+
+void RunWriter::writeLoops(const Map& map, LoopClosing& loops) {
   bool closed = false;
   for (const LoopEvent& event : loops.takeEvents()) {
     const LoopRow row{event.timestamp, event.matched_timestamp, event.score, event.inliers,
@@ -102,13 +113,6 @@ void RunWriter::write(const FrameOutcome& outcome, const Map& map, LoopClosing& 
   }
   if (closed) {
     rewriteKeyFrames(map);
-  }
-  if (key_points_) {
-    writeKeyPoints(outcome);
-  }
-  writePicture(outcome);
-  if (reports_) {
-    record(outcome);
   }
 }
 

@@ -33,6 +33,9 @@ class RunWriter {
   /// Makes room for what follows where the disk is full.
   void releaseReserve() { folder_.releaseReserve(); }
 
+  /// Rows for the candidates whose fate was decided since; write() does it for each frame.
+  void writeLoops(const Map& map, LoopClosing& loops);
+
   /// The poses as they are at the end, in place of those of the moment.
   void finish(const std::vector<StampedPose>& poses, const Map& map);
 

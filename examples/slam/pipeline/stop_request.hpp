@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <csignal>
 
 namespace hmcdyn::slam {
@@ -23,6 +24,9 @@ class StopRequest {
 
   /// True from the first signal on. Any thread may ask.
   bool requested() const noexcept;
+
+  /// Becomes true with it, for those who take a flag; lives as long as the program.
+  const std::atomic<bool>& flag() const noexcept;
 
   /// The signal that came, SIGINT or SIGTERM; 0 = none.
   int signal() const noexcept;

@@ -15,8 +15,10 @@ TEST(StopRequest, IsAskedForByEitherSignal) {
     const StopRequest stop;
     EXPECT_FALSE(stop.requested());
     EXPECT_EQ(stop.signal(), 0);
+    EXPECT_FALSE(stop.flag());
     std::raise(signal);
     EXPECT_TRUE(stop.requested());
+    EXPECT_TRUE(stop.flag());
     EXPECT_EQ(stop.signal(), signal);
   }
 }
