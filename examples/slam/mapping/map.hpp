@@ -46,7 +46,7 @@ struct MapOptions {
   /// A key frame is superfluous when this share of its points has more observers than this. What it
   /// saw is lost to later adjustments, so that three (as in ORB-SLAM) cost accuracy.
   double superfluous_share = 0.9;
-  std::size_t superfluous_observers = 8;
+  std::size_t superfluous_observers = 5;
   /// Depth noise of the sensor, sigma = floor + quadratic z^2 (m); Khoshelham, Elberink 2012.
   double depth_noise_floor = 0.001;
   double depth_noise_quadratic = 1.425e-3;
