@@ -60,6 +60,8 @@ if $install; then
 fi
 [[ $repetitions =~ ^[1-9][0-9]*$ ]] || usage_error "--repetitions is '$repetitions'; expected a number above 0"
 benches=(bench_clustering bench_epipolar bench_filter_stage bench_pose_refinement)
+# With the examples only, and on real frames; HMCDYN_BENCH_FRAMES names a folder in TUM's format.
+front_end=(bench_front_end)
 export OMP_NUM_THREADS=1 # Open3D and PCL would take all cores
 
 # build FOLDER CMAKE_ARGUMENT...
@@ -68,14 +70,14 @@ build() {
   shift
   echo "== Building $folder"
   cmake "$@" -DHMCDYN_BUILD_TESTS=OFF >/dev/null
-  cmake --build "$folder" --parallel "$(nproc)" --target "${benches[@]}" >/dev/null
+  cmake --build "$folder" --parallel "$(nproc)" --target "${benches[@]}" "${front_end[@]}" >/dev/null
 }
 
 # run FOLDER: results in FOLDER/results/NAME.json
 run() {
   local folder=$1 start=$SECONDS
   mkdir -p "$folder/results"
-  for bench in "${benches[@]}"; do
+  for bench in "${benches[@]}" "${front_end[@]}"; do
     printf '== Running %s in %s ...' "$bench" "$folder"
     "$folder/bin/$bench" --benchmark_enable_random_interleaving=true \
       --benchmark_repetitions=$repetitions --benchmark_min_time=0.02 \
@@ -92,6 +94,7 @@ run() {
 build build/bench --preset bench
 run build/bench
 folders=(build/bench)
+front_end=()
 if $plain; then
   build build/bench-o2 -S . -B build/bench-o2 -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_FLAGS_RELEASE="-O2 -DNDEBUG" -DHMCDYN_BUILD_BENCHMARKS=ON \

@@ -58,6 +58,17 @@ PEERS = {
     "solvepnp_lm": "`cv::solvePnPRefineLM`, stopped as early as allowed",
     "solvepnp_lm_default": "`cv::solvePnPRefineLM`, its own criteria",
     "hmcdyn_rounds": "ours with four outlier rounds",
+    "lk_21_level3_30": "`cv::calcOpticalFlowPyrLK`, 21 px, 3 levels above, 30 iterations (default)",
+    "lk_21_level2_30": "the same, 21 px, 2 levels, 30 iterations",
+    "lk_15_level2_10": "the same, 15 px, 2 levels, 10 iterations",
+    "lk_11_level2_10": "the same, 11 px, 2 levels, 10 iterations",
+    "lk_9_level2_10": "the same, 9 px, 2 levels, 10 iterations",
+    "fm_ransac": "`cv::findFundamentalMat`, `FM_RANSAC`",
+    "fm_lmeds": "the same, `FM_LMEDS`",
+    "usac_8pts": "the same, `USAC_FM_8PTS`",
+    "usac_8pts_refit": "the same and an 8-point refit",
+    "usac_magsac_refit": "the same, `USAC_MAGSAC` and an 8-point refit",
+    "cv_orb": "`cv::ORB`",
 }
 KERNELS = {
     "clustering": "Clustering",
@@ -67,10 +78,54 @@ KERNELS = {
 }
 
 
+# Kernels on real frames: title and what is counted besides time, with its column.
+FRONT_END = {
+    "optical_flow": ("Optical flow (with both pyramids)",
+                     {"median_px": "median error (px)", "good_percent": "within 1 px (%)",
+                      "found_percent": "not dropped (%)"}),
+    "fundamental": ("Fundamental matrix, 40 % wrong matches",
+                    {"median_px": "median distance of true pairs (px)", "failed": "frames without"}),
+    "features": ("ORB features, 8 levels",
+                 {"points": "points", "cells_percent": "cells of 40 px with one (%)"}),
+}
+
+
+def front_end_tables(folder):
+    file = folder / "results" / "bench_front_end.json"
+    if not file.exists():
+        return []
+    rows, counts = {}, {}
+    for row in json.loads(file.read_text())["benchmarks"]:
+        if row["run_type"] != "iteration" or row.get("error_occurred"):
+            continue
+        kernel, _, contender = row["run_name"].split("/")
+        scale = {"ns": 1.0, "us": 1e3, "ms": 1e6, "s": 1e9}[row["time_unit"]]
+        rows.setdefault(kernel, {}).setdefault(contender, []).append(row["cpu_time"] * scale)
+        counts[kernel, contender] = row
+    lines = []
+    for kernel, (title, columns) in FRONT_END.items():
+        if kernel not in rows:
+            continue
+        lines += ["", f"### {title}", "", "| | time | " + " | ".join(columns.values()) + " |",
+                  "|---" * (len(columns) + 2) + "|"]
+        for contender, times in rows[kernel].items():
+            name = "**hmcdyn**" if contender == "hmcdyn" else PEERS.get(contender, contender)
+            cells = [f"{counts[kernel, contender][key]:.3g}" for key in columns]
+            lines.append(f"| {name} | {duration(statistics.median(times))} | "
+                         + " | ".join(cells) + " |")
+    if lines:
+        lines = ["", "## Front end", "", "1000 points on 24 real frames of 640x480 "
+                 "(TUM's fr3_walking_halfsphere); see `bench/bench_front_end.cpp` for how the truth "
+                 "is made.", *lines]
+    return lines
+
+
 def read(folder):
     """{(kernel, n): {contender: median CPU time (ns)}} of a folder's results, and the context."""
     times, context = {}, {}
     for file in sorted((folder / "results").glob("*.json")):
+        if file.name == "bench_front_end.json":
+            continue
         content = json.loads(file.read_text())
         context = content["context"]
         runs = {}
@@ -247,7 +302,8 @@ def main():
     if factors:
         lines += ["Time per N log N, relative to N = " + f"{sizes[0]:,}: "
                   + ", ".join(f"{n:,}: {f:.2f}" for n, f in zip(sizes, factors)) + ".", ""]
-    lines += ["## Times", "", "Median CPU time, `-O3 -march=x86-64-v3`.", *time_tables(times), ""]
+    lines += ["## Times", "", "Median CPU time, `-O3 -march=x86-64-v3`.", *time_tables(times),
+              *front_end_tables(arguments.folders[0]), ""]
     if arguments.notes and arguments.notes.exists():
         lines += [arguments.notes.read_text().rstrip(), ""]
     arguments.output.write_text("\n".join(lines))
