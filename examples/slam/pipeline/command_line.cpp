@@ -239,6 +239,9 @@ void declareTracking(CLI::App& app, SlamOptions& options) {
                  "So many times more key points at most where boxes cover much of the image")
       ->capture_default_str()
       ->group("Tracking");
+  app.add_flag("!--no-motion-model", options.tracker.fuse_motion,
+               "Poses as measured, not together with what the motion before them tells")
+      ->group("Tracking");
   app.add_flag("!--no-mapping", options.mapping.enabled, "Without local bundle adjustment")
       ->group("Tracking");
   app.add_flag("!--no-loops", options.loops.enabled,

@@ -279,8 +279,9 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   }
   const MotionModel::Update update = motion_.update(
       frame.timestamp, fine.refinement.camera_from_world, fine.refinement.covariance);
-  frame.camera_from_world = update.camera_from_world;
-  if (update.fused && expected && expected->covariance) {
+  frame.camera_from_world = fine.refinement.camera_from_world;
+  if (options_.fuse_motion && update.fused && expected && expected->covariance) {
+    frame.camera_from_world = update.camera_from_world;
     frame.prior = PosePrior{expected->camera_from_world, *expected->covariance};
   }
   frame.tracked = true;

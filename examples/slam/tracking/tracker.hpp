@@ -38,6 +38,7 @@ struct TrackerOptions {
   MatcherOptions matcher;
   PoseRefinementOptions refinement = rgbdRefinement();
   MotionModelOptions motion;
+  bool fuse_motion = true;  ///< Off: the motion only says where to search.
   KeyFramePolicy key_frames;
   float prediction_radius = 15.0f;  ///< Search window around the predicted pose (px).
   float wide_radius = 40.0f;        ///< The same after a first failure (px).
