@@ -105,7 +105,7 @@ inline std::vector<float> keptPointWeights(Span<const float> depth, const DepthA
   std::array<float, detail::kLanes> rest{};
   std::copy(depth.begin() + in_lanes, depth.end(), rest.begin());
   detail::weighLanes(rest.data(), anchor, options, rest.data());
-  std::copy_n(rest.begin(), depth.size() - in_lanes, reuse.begin() + in_lanes);
+  std::copy_n(rest.data(), depth.size() - in_lanes, reuse.data() + in_lanes);
   return reuse;
 }
 

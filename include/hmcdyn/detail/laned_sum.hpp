@@ -47,7 +47,7 @@ LanedSum sumOf(Span<const float> x, Counts&& counts, Value&& value) {
   for (std::size_t i = 0; i < in_lanes; i += kLanes) {
     addLanes(x.data() + i, counts, value, result);
   }
-  std::array<float, kLanes> rest;
+  std::array<float, kLanes> rest{};
   rest.fill(kNaN);
   std::copy(x.begin() + in_lanes, x.end(), rest.begin());
   addLanes(rest.data(), counts, value, result);
