@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slam/mapping/local_bundle.hpp"
+#include "slam/optimization/se3_manifold.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -113,18 +114,6 @@ void addCovisibility(const MapCopy& copy, const Observers& observers, LoopSnapsh
   }
 }
 
-/// What a small motion (rotation vector, translation) is on the other side of a rigid one.
-Eigen::Matrix<double, 6, 6> adjointOf(const Eigen::Isometry3d& motion) {
-  const Eigen::Vector3d& t = motion.translation();
-  Eigen::Matrix3d cross;
-  cross << 0.0, -t.z(), t.y(), t.z(), 0.0, -t.x(), -t.y(), t.x(), 0.0;
-  Eigen::Matrix<double, 6, 6> adjoint = Eigen::Matrix<double, 6, 6>::Zero();
-  adjoint.topLeftCorner<3, 3>() = motion.linear();
-  adjoint.bottomRightCorner<3, 3>() = motion.linear();
-  adjoint.bottomLeftCorner<3, 3>() = cross * motion.linear();
-  return adjoint;
-}
-
 }  // namespace
 
 LoopKeyFrame makeLoopKeyFrame(const Frame& frame) {
@@ -171,7 +160,7 @@ std::optional<LoopConstraint> survivingLoop(const Map& map, const LoopConstraint
   surviving.to = static_cast<std::size_t>(to);
   const Eigen::Isometry3d to_from_survivor = fromSurvivor(loop.to, to);
   surviving.to_from = to_from_survivor.inverse() * loop.to_from * fromSurvivor(loop.from, from);
-  const Eigen::Matrix<double, 6, 6> moved = adjointOf(to_from_survivor);
+  const Eigen::Matrix<double, 6, 6> moved = adjoint(to_from_survivor);
   surviving.information = moved.transpose() * loop.information * moved;
   if (from != static_cast<int>(loop.from) || to != static_cast<int>(loop.to)) {
     surviving.key_points.clear();  // they were the culled ones'

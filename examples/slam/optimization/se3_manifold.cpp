@@ -57,6 +57,14 @@ Eigen::Vector3d logarithm(const Eigen::Quaterniond& rotation) {
   return 2.0 * half / sine * rotation.vec();
 }
 
+Eigen::Matrix<double, 6, 6> adjoint(const Eigen::Isometry3d& motion) {
+  Eigen::Matrix<double, 6, 6> result = Eigen::Matrix<double, 6, 6>::Zero();
+  result.topLeftCorner<3, 3>() = motion.linear();
+  result.bottomRightCorner<3, 3>() = motion.linear();
+  result.bottomLeftCorner<3, 3>() = skew(motion.translation()) * motion.linear();
+  return result;
+}
+
 bool Se3Manifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
   const Eigen::Quaterniond step = exponential(Eigen::Map<const Eigen::Vector3d>(delta));
   const Eigen::Vector3d translation =

@@ -35,6 +35,10 @@ Eigen::Quaterniond exponential(const Eigen::Vector3d& omega);
 /// Rotation vector (rad, length 0..pi) of a unit quaternion.
 Eigen::Vector3d logarithm(const Eigen::Quaterniond& rotation);
 
+/// What a small motion (rotation vector, translation) before a rigid one is after it:
+/// motion * (Exp(omega), v) * motion^-1.
+Eigen::Matrix<double, 6, 6> adjoint(const Eigen::Isometry3d& motion);
+
 #if HMCDYN_SLAM_CERES_HAS_MANIFOLD
 using Se3ManifoldBase = ceres::Manifold;
 #else

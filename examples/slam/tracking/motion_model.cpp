@@ -36,16 +36,6 @@ Eigen::Isometry3d normalized(const Eigen::Isometry3d& pose) {
   return result;
 }
 
-/// How a small step before a motion looks after it: motion * (Exp(omega), v) * motion^-1.
-Matrix6 adjoint(const Eigen::Isometry3d& motion) {
-  const Eigen::Matrix3d rotation = motion.linear();
-  Matrix6 result = Matrix6::Zero();
-  result.topLeftCorner<3, 3>() = rotation;
-  result.bottomRightCorner<3, 3>() = rotation;
-  result.bottomLeftCorner<3, 3>() = skew(motion.translation()) * rotation;
-  return result;
-}
-
 /// Nothing is known of a velocity: 10 rad/s, 10 m/s (s.d.).
 Matrix6 unknownVelocity() { return 100.0 * Matrix6::Identity(); }
 
