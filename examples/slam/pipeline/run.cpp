@@ -19,6 +19,7 @@
 #include "slam/source/depth_camera.hpp"
 #include "slam/source/folder_source.hpp"
 #include "slam/source/live_source.hpp"
+#include "slam/source/read_ahead.hpp"
 #include "slam/source/realtime_pacer.hpp"
 #include "support/progress_bar.hpp"
 
@@ -39,7 +40,8 @@ std::unique_ptr<FrameSource> makeSource(const SlamOptions& options,
       std::make_unique<TumFolderSource>(options.dataset, options.association, calibration, warn);
   folder->limit(options.max_frames);
   if (options.mode == RunMode::kRealtime) {
-    return std::make_unique<RealtimePacer>(std::move(folder), makeWallClock(), options.speed);
+    return std::make_unique<RealtimePacer>(std::make_unique<ReadAhead>(std::move(folder)),
+                                           makeWallClock(), options.speed);
   }
   return folder;
 }

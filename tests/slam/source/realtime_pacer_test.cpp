@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "source/fake_recording.hpp"
+
 namespace hmcdyn::slam {
 namespace {
 
@@ -31,42 +33,6 @@ class FakeClock final : public SteadyClock {
 
  private:
   FakeTime& time_;
-};
-
-/// A recording of empty images with these time stamps.
-class FakeRecording final : public RecordedSource {
- public:
-  explicit FakeRecording(std::vector<double> stamps) : stamps_(std::move(stamps)) {}
-
-  std::optional<RgbdFrame> next() override {
-    if (position_ == stamps_.size()) {
-      return std::nullopt;
-    }
-    ++counts_.taken_up;
-    RgbdFrame frame;
-    frame.index = position_;
-    frame.timestamp = stamps_[position_++];
-    return frame;
-  }
-  std::optional<std::size_t> expectedFrames() const override { return stamps_.size(); }
-  std::string name() const override { return "recording"; }
-  SourceCounts counts() const override { return counts_; }
-  std::optional<double> nextTimestamp() const override { return at(position_); }
-  std::optional<double> timestampAfterNext() const override { return at(position_ + 1); }
-  void skip() override {
-    ++position_;
-    ++counts_.taken_up;
-    ++counts_.dropped;
-  }
-
- private:
-  std::optional<double> at(std::size_t i) const {
-    return i < stamps_.size() ? std::optional<double>(stamps_[i]) : std::nullopt;
-  }
-
-  std::vector<double> stamps_;
-  std::size_t position_ = 0;
-  SourceCounts counts_;
 };
 
 RealtimePacer pace(std::vector<double> stamps, FakeTime& time, double speed = 1.0) {

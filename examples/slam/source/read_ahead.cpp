@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/source/read_ahead.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hmcdyn::slam {
+namespace {
+
+std::unique_ptr<RecordedSource> checked(std::unique_ptr<RecordedSource> source,
+                                        std::size_t frames) {
+  if (!source) {
+    throw std::invalid_argument("ReadAhead: source is null");
+  }
+  if (frames < 2) {
+    throw std::invalid_argument(fmt::format("ReadAhead: frames is {}; expected 2 or more", frames));
+  }
+  return source;
+}
+
+}  // namespace
+
+ReadAhead::ReadAhead(std::unique_ptr<RecordedSource> source, std::size_t frames)
+    : source_(checked(std::move(source), frames)),
+      worker_(
+          [this](std::monostate) {
+            Loaded loaded;
+            loaded.frame = source_->next();
+            loaded.counts = source_->counts();
+            loaded.failure = source_->failure();
+            return loaded;
+          },
+          frames) {
+  expected_frames_ = source_->expectedFrames();
+  name_ = source_->name();
+  for (std::size_t k = 0; k < frames; ++k) {
+    worker_.submit({});
+  }
+  fill();
+}
+
+void ReadAhead::fill() {
+  while (loaded_.size() < 2 && (loaded_.empty() || loaded_.back().frame)) {
+    loaded_.push_back(worker_.take());
+    if (loaded_.back().frame) {
+      worker_.submit({});
+    }
+  }
+}
+
+std::optional<double> ReadAhead::timestampAt(std::size_t place) const {
+  return place < loaded_.size() && loaded_[place].frame
+             ? std::optional<double>(loaded_[place].frame->timestamp)
+             : std::nullopt;
+}
+
+void ReadAhead::takeFirst() {
+  counts_ = loaded_.front().counts;
+  failure_ = loaded_.front().failure;
+  if (loaded_.front().frame) {  // the end stays
+    loaded_.pop_front();
+    fill();
+  }
+}
+
+std::optional<RgbdFrame> ReadAhead::next() {
+  std::optional<RgbdFrame> frame = loaded_.front().frame;  // shares the images
+  takeFirst();
+  return frame;
+}
+
+void ReadAhead::skip() {
+  skipped_ += loaded_.front().frame ? 1 : 0;
+  takeFirst();
+}
+
+SourceCounts ReadAhead::counts() const {
+  SourceCounts counts = counts_;
+  counts.dropped += skipped_;
+  return counts;
+}
+
+}  // namespace hmcdyn::slam
