@@ -70,7 +70,7 @@ TimeStatistics timeStatistics(std::vector<double> values) {
   const std::size_t n = values.size();
   const std::size_t rank = (95 * n + 99) / 100;  // ceil(0.95 n)
   return {std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n),
-          0.5 * (values[(n - 1) / 2] + values[n / 2]), values[rank - 1]};
+          0.5 * (values[(n - 1) / 2] + values[n / 2]), values[rank - 1], values.back()};
 }
 
 void StageHistory::add(const StageTimes& frame) {

@@ -66,6 +66,7 @@ struct TimeStatistics {
   double mean = 0.0;
   double median = 0.0;
   double p95 = 0.0;
+  double max = 0.0;
 };
 
 /// All 0 for no values. @throws std::invalid_argument on a value that is not finite.

@@ -81,6 +81,12 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group("Input");
+  app.add_option("--held-images", options.held_images,
+                 "realtime: images that the camera's driver holds while tracking is late; when "
+                 "another comes, the oldest is dropped (1: only the newest waits)")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->group("Input");
   app.add_option("--camera", options.camera,
                  "Camera: " + join(cameraPresetNames()) +
                      ", or a calibration YAML (ours or an ORB-SLAM3 settings file)")

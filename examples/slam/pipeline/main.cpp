@@ -23,6 +23,9 @@ void printSummary(const nlohmann::json& summary, const std::filesystem::path& ou
   const nlohmann::json& counts = summary.at("counts");
   std::cout << "tracked " << counts.at("frames_tracked") << " of " << counts.at("frames_in")
             << " frames";
+  if (counts.at("frames_dropped") > 0) {
+    std::cout << " (" << counts.at("frames_dropped") << " dropped as late)";
+  }
   if (summary.contains("evaluation") && summary.at("evaluation").contains("ate_m")) {
     std::cout << ", ATE RMSE " << summary.at("evaluation").at("ate_m").at("rmse").get<double>()
               << " m over " << summary.at("evaluation").at("ate_m").at("pairs") << " poses";

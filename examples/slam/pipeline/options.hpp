@@ -32,6 +32,7 @@ struct SlamOptions {
   SourceKind source = SourceKind::kFolder;
   std::filesystem::path dataset;  ///< Folder in TUM format.
   double speed = 1.0;             ///< Real time: so many times as fast as it was recorded.
+  std::size_t held_images = 3;    ///< Real time: images that wait at most for a late tracker.
   DepthCameraOptions live;        ///< The camera of SourceKind::kLive.
   DatasetOptions association;
   std::string camera = "tum3";  ///< Preset or calibration file.

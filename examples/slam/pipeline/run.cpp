@@ -40,8 +40,9 @@ std::unique_ptr<FrameSource> makeSource(const SlamOptions& options,
       std::make_unique<TumFolderSource>(options.dataset, options.association, calibration, warn);
   folder->limit(options.max_frames);
   if (options.mode == RunMode::kRealtime) {
-    return std::make_unique<RealtimePacer>(std::make_unique<ReadAhead>(std::move(folder)),
-                                           makeWallClock(), options.speed);
+    auto ahead = std::make_unique<ReadAhead>(std::move(folder), options.held_images + 1);
+    return std::make_unique<RealtimePacer>(std::move(ahead), makeWallClock(), options.speed,
+                                           options.held_images);
   }
   return folder;
 }
@@ -162,6 +163,9 @@ bool doFrame(Run& run, const PreparedFrame& frame) {
   run.counts.add(outcome.filtered);
   run.counts.add(outcome.image.timestamp, outcome.tracking);
   run.times.add(outcome.times);
+  if (const std::optional<double> lag = run.source->secondsSinceDue()) {
+    run.counts.latency_ms.push_back(1e3 * *lag);
+  }
   if (run.dense && outcome.tracking.new_key_frame) {
     run.dense->add(run.pipeline.map().keyFrames().size() - 1, outcome);
   }

@@ -88,6 +88,7 @@ nlohmann::json toJson(const std::vector<StageSummary>& stages) {
                          {"mean_ms", stage.wall_ms.mean},
                          {"median_ms", stage.wall_ms.median},
                          {"p95_ms", stage.wall_ms.p95},
+                         {"max_ms", stage.wall_ms.max},
                          {"mean_cpu_ms", stage.cpu_ms.mean}};
   }
   return json;
@@ -119,6 +120,13 @@ nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
   summary["counts"]["local_adjustments"] = pipeline.mapper().adjustments();
   summary["counts"]["loops_closed"] = pipeline.loops().loopsClosed();
   summary["stages"] = toJson(stages);
+  if (!counts.latency_ms.empty()) {
+    const TimeStatistics latency = timeStatistics(counts.latency_ms);
+    summary["latency_ms"] = {{"mean", latency.mean},
+                             {"median", latency.median},
+                             {"p95", latency.p95},
+                             {"max", latency.max}};
+  }
   summary["tracking_cpu_ms"] = trackingCpuMs(stages);
   summary["options"] = toJson(options, names.detector);
   summary["versions"] = libraryVersions();
@@ -142,6 +150,7 @@ nlohmann::json toJson(const SlamOptions& options, const std::string& detector_na
           {"nms_threshold", options.detector.nms_threshold},
           {"bridge_s", options.bridge},
           {"mode", options.mode == RunMode::kOffline ? "offline" : "realtime"},
+          {"held_images", options.held_images},
           {"filter", hmcdyn::toString(stage.rule)},
           {"soft_weights", options.filter.soft_weights},
           {"motion_model", options.tracker.fuse_motion},

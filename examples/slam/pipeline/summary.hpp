@@ -38,6 +38,7 @@ struct RunCounts {
   std::size_t map_points = 0;                      ///< Of the dense map.
   bool stopped = false;                            ///< By a signal.
   std::vector<std::string> write_failures;         ///< File and reason; the first ended the run.
+  std::vector<double> latency_ms;  ///< In real time: from a frame's due time to its pose.
   SourceCounts source;
   DetectionCounts detections;
 

@@ -53,9 +53,10 @@ void TumFolderSource::skip() {
   }
 }
 
-std::optional<double> TumFolderSource::timestampAt(std::size_t position) const {
-  return position < entries_.size() ? std::optional<double>(entries_[position].timestamp)
-                                    : std::nullopt;
+std::optional<double> TumFolderSource::upcomingTimestamp(std::size_t before) const {
+  return before < entries_.size() - position_
+             ? std::optional<double>(entries_[position_ + before].timestamp)
+             : std::nullopt;
 }
 
 }  // namespace hmcdyn::slam

@@ -28,13 +28,10 @@ class TumFolderSource final : public RecordedSource {
   std::string name() const override;
   SourceCounts counts() const override { return counts_; }
 
-  std::optional<double> nextTimestamp() const override { return timestampAt(position_); }
-  std::optional<double> timestampAfterNext() const override { return timestampAt(position_ + 1); }
+  std::optional<double> upcomingTimestamp(std::size_t before) const override;
   void skip() override;
 
  private:
-  std::optional<double> timestampAt(std::size_t position) const;
-
   std::filesystem::path folder_;
   std::vector<FrameEntry> entries_;
   CameraCalibration calibration_;

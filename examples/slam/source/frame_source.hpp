@@ -43,6 +43,9 @@ class FrameSource {
 
   virtual SourceCounts counts() const = 0;
 
+  /// Time (s) since the last frame was due; nothing where no clock says when frames come.
+  virtual std::optional<double> secondsSinceDue() const { return std::nullopt; }
+
   /// Why the frames ended before their time, such as an unplugged camera; empty = they did not.
   virtual std::string failure() const { return {}; }
 };
@@ -50,11 +53,9 @@ class FrameSource {
 /// A source whose time stamps are known before its frames are loaded.
 class RecordedSource : public FrameSource {
  public:
-  /// Time stamp (s) of the frame that next() takes up; nothing at the end.
-  virtual std::optional<double> nextTimestamp() const = 0;
-
-  /// Time stamp (s) of the frame behind that; nothing where there is none.
-  virtual std::optional<double> timestampAfterNext() const = 0;
+  /// Time stamp (s) of the frame that next() takes up after `before` others; nothing beyond the
+  /// end.
+  virtual std::optional<double> upcomingTimestamp(std::size_t before) const = 0;
 
   /// Drops the frame that next() would take up, without loading it.
   virtual void skip() = 0;

@@ -9,21 +9,24 @@
 namespace hmcdyn::slam {
 namespace {
 
+constexpr std::size_t kBeyondSight = 2;  // frames
+
 std::unique_ptr<RecordedSource> checked(std::unique_ptr<RecordedSource> source,
-                                        std::size_t frames) {
+                                        std::size_t in_sight) {
   if (!source) {
     throw std::invalid_argument("ReadAhead: source is null");
   }
-  if (frames < 2) {
-    throw std::invalid_argument(fmt::format("ReadAhead: frames is {}; expected 2 or more", frames));
+  if (in_sight < 1) {
+    throw std::invalid_argument("ReadAhead: in_sight is 0; expected 1 or more");
   }
   return source;
 }
 
 }  // namespace
 
-ReadAhead::ReadAhead(std::unique_ptr<RecordedSource> source, std::size_t frames)
-    : source_(checked(std::move(source), frames)),
+ReadAhead::ReadAhead(std::unique_ptr<RecordedSource> source, std::size_t in_sight)
+    : in_sight_(in_sight),
+      source_(checked(std::move(source), in_sight)),
       worker_(
           [this](std::monostate) {
             Loaded loaded;
@@ -32,17 +35,17 @@ ReadAhead::ReadAhead(std::unique_ptr<RecordedSource> source, std::size_t frames)
             loaded.failure = source_->failure();
             return loaded;
           },
-          frames) {
+          in_sight + kBeyondSight) {
   expected_frames_ = source_->expectedFrames();
   name_ = source_->name();
-  for (std::size_t k = 0; k < frames; ++k) {
+  for (std::size_t k = 0; k < in_sight + kBeyondSight; ++k) {
     worker_.submit({});
   }
   fill();
 }
 
 void ReadAhead::fill() {
-  while (loaded_.size() < 2 && (loaded_.empty() || loaded_.back().frame)) {
+  while (loaded_.size() < in_sight_ && (loaded_.empty() || loaded_.back().frame)) {
     loaded_.push_back(worker_.take());
     if (loaded_.back().frame) {
       worker_.submit({});
@@ -50,9 +53,9 @@ void ReadAhead::fill() {
   }
 }
 
-std::optional<double> ReadAhead::timestampAt(std::size_t place) const {
-  return place < loaded_.size() && loaded_[place].frame
-             ? std::optional<double>(loaded_[place].frame->timestamp)
+std::optional<double> ReadAhead::upcomingTimestamp(std::size_t before) const {
+  return before < loaded_.size() && loaded_[before].frame
+             ? std::optional<double>(loaded_[before].frame->timestamp)
              : std::nullopt;
 }
 

@@ -18,9 +18,9 @@ namespace hmcdyn::slam {
 class ReadAhead final : public RecordedSource {
  public:
   /// @param source is used by the thread alone from now on; so is what it reports to.
-  /// @param frames that are loaded ahead; at least 2, as the next two time stamps are asked for.
-  /// @throws std::invalid_argument for no source, or fewer frames.
-  explicit ReadAhead(std::unique_ptr<RecordedSource> source, std::size_t frames = 4);
+  /// @param in_sight frames whose time stamps can be asked for; two more are loaded ahead.
+  /// @throws std::invalid_argument for no source, or no frame in sight.
+  explicit ReadAhead(std::unique_ptr<RecordedSource> source, std::size_t in_sight = 2);
 
   std::optional<RgbdFrame> next() override;
   std::optional<std::size_t> expectedFrames() const override { return expected_frames_; }
@@ -29,8 +29,8 @@ class ReadAhead final : public RecordedSource {
   SourceCounts counts() const override;
   std::string failure() const override { return failure_; }
 
-  std::optional<double> nextTimestamp() const override { return timestampAt(0); }
-  std::optional<double> timestampAfterNext() const override { return timestampAt(1); }
+  /// Nothing, too, beyond the frames in sight.
+  std::optional<double> upcomingTimestamp(std::size_t before) const override;
   void skip() override;
 
  private:
@@ -41,12 +41,12 @@ class ReadAhead final : public RecordedSource {
   };
 
   void fill();
-  std::optional<double> timestampAt(std::size_t place) const;
   void takeFirst();
 
   std::optional<std::size_t> expected_frames_;
   std::string name_;
-  std::deque<Loaded> loaded_;  ///< The next two, or what is left.
+  std::size_t in_sight_;
+  std::deque<Loaded> loaded_;  ///< The frames in sight, or what is left.
   SourceCounts counts_;
   std::size_t skipped_ = 0;
   std::string failure_;

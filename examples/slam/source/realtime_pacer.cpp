@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/source/realtime_pacer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
@@ -32,8 +33,8 @@ class WallClock final : public SteadyClock {
 std::unique_ptr<SteadyClock> makeWallClock() { return std::make_unique<WallClock>(); }
 
 RealtimePacer::RealtimePacer(std::unique_ptr<RecordedSource> source,
-                             std::unique_ptr<SteadyClock> clock, double speed)
-    : source_(std::move(source)), clock_(std::move(clock)), speed_(speed) {
+                             std::unique_ptr<SteadyClock> clock, double speed, std::size_t held)
+    : source_(std::move(source)), clock_(std::move(clock)), speed_(speed), held_(held) {
   if (!source_ || !clock_) {
     throw std::invalid_argument(
         fmt::format("RealtimePacer: {} is null", source_ ? "clock" : "source"));
@@ -42,6 +43,9 @@ RealtimePacer::RealtimePacer(std::unique_ptr<RecordedSource> source,
     throw std::invalid_argument(
         fmt::format("RealtimePacer: speed is {}; expected a finite value above 0", speed_));
   }
+  if (held_ == 0) {
+    throw std::invalid_argument("RealtimePacer: held is 0; expected 1 image or more");
+  }
 }
 
 double RealtimePacer::dueTime(double timestamp) const {
@@ -49,23 +53,29 @@ double RealtimePacer::dueTime(double timestamp) const {
 }
 
 std::optional<RgbdFrame> RealtimePacer::next() {
-  std::optional<double> timestamp = source_->nextTimestamp();
-  if (!timestamp) {
+  if (!source_->upcomingTimestamp(0)) {
     return std::nullopt;
   }
+  const double now = clock_->now();
   if (!first_timestamp_) {
-    first_timestamp_ = timestamp;
-    start_ = clock_->now();
+    first_timestamp_ = source_->upcomingTimestamp(0);
+    start_ = now;
+    due_ = now;
     return source_->next();
   }
-  const double now = clock_->now();
-  for (std::optional<double> after = source_->timestampAfterNext(); after && dueTime(*after) <= now;
-       after = source_->timestampAfterNext()) {
+  const auto isDue = [&](std::optional<double> timestamp) {
+    return timestamp && dueTime(*timestamp) <= now;
+  };
+  while (isDue(source_->upcomingTimestamp(held_))) {
     source_->skip();
-    timestamp = after;
   }
-  clock_->sleepUntil(dueTime(*timestamp));
+  due_ = std::max(*due_, dueTime(*source_->upcomingTimestamp(0)));
+  clock_->sleepUntil(*due_);
   return source_->next();
+}
+
+std::optional<double> RealtimePacer::secondsSinceDue() const {
+  return due_ ? std::optional(clock_->now() - *due_) : std::nullopt;
 }
 
 }  // namespace hmcdyn::slam

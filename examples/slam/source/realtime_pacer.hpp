@@ -30,20 +30,24 @@ class SteadyClock {
 std::unique_ptr<SteadyClock> makeWallClock();
 
 /// Delivers the frames of a recording as a live camera would: each when its time stamp says so,
-/// counted from the first frame. A frame is late, and dropped without being loaded, when the one
-/// behind it is due as well: a camera hands out its newest image. The last frame is always
-/// delivered. Time stamps that stand still or go back are due at once.
+/// counted from the first frame. A camera's driver holds a few images for a program that is late;
+/// when they are all taken and another image comes, the oldest is dropped, here without being
+/// loaded. The last images are always delivered. Time stamps that stand still or go back are due at
+/// once.
 class RealtimePacer final : public FrameSource {
  public:
+  /// @param source can tell the time stamps of `held` + 1 frames.
   /// @param speed times the recording's; above 0.
-  /// @throws std::invalid_argument for null pointers or another speed.
+  /// @param held images that wait at most; 1: only the newest, as there is.
+  /// @throws std::invalid_argument for null pointers, another speed, or none held.
   RealtimePacer(std::unique_ptr<RecordedSource> source, std::unique_ptr<SteadyClock> clock,
-                double speed = 1.0);
+                double speed = 1.0, std::size_t held = 1);
 
   std::optional<RgbdFrame> next() override;
   std::optional<std::size_t> expectedFrames() const override { return source_->expectedFrames(); }
   std::string name() const override { return source_->name() + " in real time"; }
   SourceCounts counts() const override { return source_->counts(); }
+  std::optional<double> secondsSinceDue() const override;
   std::string failure() const override { return source_->failure(); }
 
  private:
@@ -52,8 +56,10 @@ class RealtimePacer final : public FrameSource {
   std::unique_ptr<RecordedSource> source_;
   std::unique_ptr<SteadyClock> clock_;
   double speed_;
+  std::size_t held_;
   std::optional<double> first_timestamp_;
-  double start_ = 0.0;  ///< Of the clock, when the first frame was taken up (s).
+  double start_ = 0.0;         ///< Of the clock, when the first frame was taken up (s).
+  std::optional<double> due_;  ///< When the last frame was (s).
 };
 
 }  // namespace hmcdyn::slam

@@ -26,6 +26,7 @@ TEST(TimeStatistics, P95LeavesAtMostATwentiethAbove) {
   std::vector<double> values(100);
   std::iota(values.begin(), values.end(), 1.0);
   EXPECT_DOUBLE_EQ(timeStatistics(values).p95, 95.0);
+  EXPECT_DOUBLE_EQ(timeStatistics(values).max, 100.0);
   values.resize(20);  // 1 .. 20
   EXPECT_DOUBLE_EQ(timeStatistics(values).p95, 19.0);
   EXPECT_DOUBLE_EQ(timeStatistics({7.0}).p95, 7.0);
@@ -36,6 +37,7 @@ TEST(TimeStatistics, OfNothingIsZeroAndNaNIsRefused) {
   EXPECT_EQ(none.mean, 0.0);
   EXPECT_EQ(none.median, 0.0);
   EXPECT_EQ(none.p95, 0.0);
+  EXPECT_EQ(none.max, 0.0);
   EXPECT_THROW(timeStatistics({1.0, std::nan("")}), std::invalid_argument);
   EXPECT_THROW(timeStatistics({std::numeric_limits<double>::infinity()}), std::invalid_argument);
 }

@@ -29,8 +29,10 @@ class FakeRecording final : public RecordedSource {
   std::optional<std::size_t> expectedFrames() const override { return stamps_.size(); }
   std::string name() const override { return "recording"; }
   SourceCounts counts() const override { return counts_; }
-  std::optional<double> nextTimestamp() const override { return at(position_); }
-  std::optional<double> timestampAfterNext() const override { return at(position_ + 1); }
+  std::optional<double> upcomingTimestamp(std::size_t before) const override {
+    return before < stamps_.size() - position_ ? std::optional<double>(stamps_[position_ + before])
+                                               : std::nullopt;
+  }
   void skip() override {
     ++position_;
     ++counts_.taken_up;
@@ -38,10 +40,6 @@ class FakeRecording final : public RecordedSource {
   }
 
  private:
-  std::optional<double> at(std::size_t i) const {
-    return i < stamps_.size() ? std::optional<double>(stamps_[i]) : std::nullopt;
-  }
-
   std::vector<double> stamps_;
   std::size_t position_ = 0;
   SourceCounts counts_;

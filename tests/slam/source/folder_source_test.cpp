@@ -94,12 +94,13 @@ TEST_F(FolderSource, SkipsWithoutLoading) {
   fs::resize_file(folder_.path() / "rgb" / "1000.033333.png", 100);
   TumFolderSource source = open();
   EXPECT_EQ(source.next()->index, 0u);
-  EXPECT_DOUBLE_EQ(source.nextTimestamp().value(), 1000.033333);
-  EXPECT_DOUBLE_EQ(source.timestampAfterNext().value(), 1000.066667);
+  EXPECT_DOUBLE_EQ(source.upcomingTimestamp(0).value(), 1000.033333);
+  EXPECT_DOUBLE_EQ(source.upcomingTimestamp(1).value(), 1000.066667);
+  EXPECT_FALSE(source.upcomingTimestamp(2).has_value());
   source.skip();  // damaged, which nobody finds out
-  EXPECT_FALSE(source.timestampAfterNext().has_value());
+  EXPECT_FALSE(source.upcomingTimestamp(1).has_value());
   EXPECT_EQ(source.next()->index, 2u);
-  EXPECT_FALSE(source.nextTimestamp().has_value());
+  EXPECT_FALSE(source.upcomingTimestamp(0).has_value());
   source.skip();  // nothing left
   EXPECT_EQ(source.counts().taken_up, 3u);
   EXPECT_EQ(source.counts().dropped, 1u);

@@ -19,14 +19,15 @@ std::unique_ptr<RecordedSource> recording(std::vector<double> stamps) {
   return std::make_unique<FakeRecording>(std::move(stamps));
 }
 
-TEST(ReadAhead, HandsOutEveryFrameInOrderWithTheStampsOfTheNextTwo) {
+TEST(ReadAhead, HandsOutEveryFrameInOrderWithTheStampsInSight) {
   ReadAhead source(recording({1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0}));
   EXPECT_EQ(source.name(), "recording");
   EXPECT_EQ(source.expectedFrames(), 7U);
   std::vector<double> stamps;
-  while (const std::optional<double> expected = source.nextTimestamp()) {
-    const std::optional<double> after = source.timestampAfterNext();
-    EXPECT_EQ(after, *expected < 64.0 ? std::optional<double>(2.0 * *expected) : std::nullopt);
+  while (const std::optional<double> expected = source.upcomingTimestamp(0)) {
+    EXPECT_EQ(source.upcomingTimestamp(1),
+              *expected < 64.0 ? std::optional<double>(2.0 * *expected) : std::nullopt);
+    EXPECT_FALSE(source.upcomingTimestamp(2)) << "out of sight";
     const std::optional<RgbdFrame> frame = source.next();
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->timestamp, *expected);
@@ -39,14 +40,14 @@ TEST(ReadAhead, HandsOutEveryFrameInOrderWithTheStampsOfTheNextTwo) {
 }
 
 TEST(ReadAhead, CountsWhatWasHandedOutOrSkippedAndNotWhatWaits) {
-  ReadAhead source(recording({1.0, 2.0, 3.0, 4.0, 5.0, 6.0}), 3);
+  ReadAhead source(recording({1.0, 2.0, 3.0, 4.0, 5.0, 6.0}), 1);
   EXPECT_EQ(source.counts().taken_up, 0U);
   source.next();
   EXPECT_EQ(source.counts().taken_up, 1U);
   source.skip();
   EXPECT_EQ(source.counts().taken_up, 2U);
   EXPECT_EQ(source.counts().dropped, 1U);
-  EXPECT_EQ(source.nextTimestamp(), 3.0);
+  EXPECT_EQ(source.upcomingTimestamp(0), 3.0);
   for (int k = 0; k < 10; ++k) {
     source.skip();  // beyond the end there is nothing to skip
   }
@@ -56,7 +57,7 @@ TEST(ReadAhead, CountsWhatWasHandedOutOrSkippedAndNotWhatWaits) {
 
 TEST(ReadAhead, OfNothingIsAtItsEnd) {
   ReadAhead source(recording({}));
-  EXPECT_FALSE(source.nextTimestamp());
+  EXPECT_FALSE(source.upcomingTimestamp(0));
   EXPECT_FALSE(source.next());
 }
 
@@ -74,8 +75,7 @@ class Failing final : public RecordedSource {
   std::optional<std::size_t> expectedFrames() const override { return std::nullopt; }
   std::string name() const override { return "failing"; }
   SourceCounts counts() const override { return {}; }
-  std::optional<double> nextTimestamp() const override { return 0.0; }
-  std::optional<double> timestampAfterNext() const override { return 0.0; }
+  std::optional<double> upcomingTimestamp(std::size_t /*before*/) const override { return 0.0; }
   void skip() override {}
 
  private:
@@ -93,11 +93,11 @@ TEST(ReadAhead, LoadsOnAnotherThreadAndRethrowsWhatThatThrew) {
   EXPECT_NE(loader, std::thread::id{});
 }
 
-TEST(ReadAhead, RefusesNoSourceAndTooFewFrames) {
+TEST(ReadAhead, RefusesNoSourceAndNothingInSight) {
   EXPECT_EQ(hmcdyn::test::invalidArgumentOf([] { ReadAhead source(nullptr); }),
             "ReadAhead: source is null");
-  EXPECT_EQ(hmcdyn::test::invalidArgumentOf([] { ReadAhead source(recording({1.0}), 1); }),
-            "ReadAhead: frames is 1; expected 2 or more");
+  EXPECT_EQ(hmcdyn::test::invalidArgumentOf([] { ReadAhead source(recording({1.0}), 0); }),
+            "ReadAhead: in_sight is 0; expected 1 or more");
 }
 
 }  // namespace

@@ -35,9 +35,10 @@ class FakeClock final : public SteadyClock {
   FakeTime& time_;
 };
 
-RealtimePacer pace(std::vector<double> stamps, FakeTime& time, double speed = 1.0) {
+RealtimePacer pace(std::vector<double> stamps, FakeTime& time, double speed = 1.0,
+                   std::size_t held = 1) {
   return {std::make_unique<FakeRecording>(std::move(stamps)), std::make_unique<FakeClock>(time),
-          speed};
+          speed, held};
 }
 
 TEST(RealtimePacer, WaitsForEachTimeStamp) {
@@ -71,6 +72,41 @@ TEST(RealtimePacer, DropsWhatTheNextFrameHasOvertaken) {
   EXPECT_EQ(pacer.counts().taken_up, 4u);
   EXPECT_EQ(pacer.next()->index, 4u);
   EXPECT_EQ(time.sleeps, (std::vector<double>{51.0}));
+}
+
+TEST(RealtimePacer, HoldsAsManyImagesAsTheCameraAndDropsTheOldest) {
+  FakeTime time;
+  RealtimePacer pacer = pace({0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5}, time, 1.0, 3);
+  pacer.next();
+  time.now = 50.75;  // frames 1, 2 and 3 wait
+  EXPECT_EQ(pacer.next()->index, 1u);
+  EXPECT_EQ(pacer.counts().dropped, 0u);
+  time.now = 51.25;  // 2 to 5 would wait: 2 had to go
+  EXPECT_EQ(pacer.next()->index, 3u);
+  EXPECT_EQ(pacer.counts().dropped, 1u);
+  EXPECT_EQ(pacer.next()->index, 4u);
+  EXPECT_EQ(pacer.next()->index, 5u);
+  EXPECT_TRUE(time.sleeps.empty());
+  EXPECT_EQ(pacer.next()->index, 6u);
+  EXPECT_EQ(time.sleeps, (std::vector<double>{51.5}));
+  EXPECT_EQ(pacer.counts().dropped, 1u);
+}
+
+TEST(RealtimePacer, TellsHowLongAgoTheLastFrameWasDue) {
+  FakeTime time;
+  RealtimePacer pacer = pace({0.0, 0.25, 0.5, 0.125}, time, 1.0, 3);
+  EXPECT_FALSE(pacer.secondsSinceDue());
+  pacer.next();
+  time.now = 50.0625;  // tracked
+  EXPECT_EQ(pacer.secondsSinceDue(), 0.0625);
+  time.now = 50.5;  // late
+  pacer.next();
+  EXPECT_EQ(pacer.secondsSinceDue(), 0.25);
+  pacer.next();
+  time.now = 50.75;
+  EXPECT_EQ(pacer.secondsSinceDue(), 0.25);
+  pacer.next();  // its stamp goes back: it came with the frame before
+  EXPECT_EQ(pacer.secondsSinceDue(), 0.25);
 }
 
 TEST(RealtimePacer, AlwaysDeliversTheLastFrame) {
@@ -124,6 +160,7 @@ TEST(RealtimePacer, RefusesWhatCannotBe) {
                              std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(pace({0.0}, time, speed), std::invalid_argument);
   }
+  EXPECT_THROW(pace({0.0}, time, 1.0, 0), std::invalid_argument);
   EXPECT_THROW(RealtimePacer(nullptr, std::make_unique<FakeClock>(time)), std::invalid_argument);
   EXPECT_THROW(RealtimePacer(std::make_unique<FakeRecording>(std::vector<double>{}), nullptr),
                std::invalid_argument);
