@@ -148,18 +148,70 @@ FlowMatches flowOf(const internal::FlowSelection& selection, const EarlierFrame&
   return all;
 }
 
-/// Steps 1 to 3 against one earlier frame; larger distances go into `distance`.
-EarlierFrameReport compareWith(const EarlierFrame& frame, const FlowMatches& guess,
+/// Flags of the chosen points that the memory knows to move, by `flow` to its frame; no flags where
+/// there is no memory, or no need of it.
+std::vector<std::uint8_t> movingByMemory(const internal::FlowSelection& selection,
+                                         const DynamicFeatureFilterInput& input,
+                                         const FlowMatches& flow,
+                                         const DynamicFeatureFilterOptions& options,
+                                         DynamicFeatureFilterWorkspace& workspace) {
+  const PointPairsView pairs{flow.u, flow.v, input.points.u, input.points.v};
+  if (input.memory == nullptr || !formsBeliefs(input, options) ||
+      backgroundSuffices(pairs, input.boxes, options.motion)) {
+    return {};
+  }
+  FlowMatches chosen;
+  for (const std::size_t i : selection.source) {
+    chosen.u.push_back(flow.u[i]);
+    chosen.v.push_back(flow.v[i]);
+  }
+  const SurfaceDepths surface =
+      surfaceDepths(input.depth, selection.points.u, selection.points.v, options.surface);
+  return rememberedToMove(surface.depth, chosen.u, chosen.v, *input.memory, options.belief,
+                          workspace.belief);
+}
+
+/// Earlier columns of the matches, NaN for those that the memory knows to move. Empty where the
+/// background suffices or too little is left.
+std::vector<float> columnsAtRest(const PointPairsView& pairs,
+                                 const internal::FlowSelection& selection,
+                                 const std::vector<std::uint8_t>& moving_by_memory,
+                                 Span<const DetectionBox> boxes,
+                                 const MotionModelOptions& options) {
+  if (moving_by_memory.empty() || backgroundSuffices(pairs, boxes, options)) {
+    return {};
+  }
+  std::vector<float> columns(pairs.earlier_u.begin(), pairs.earlier_u.end());
+  for (std::size_t k = 0; k < selection.source.size(); ++k) {
+    if (moving_by_memory[k] != 0) {
+      columns[selection.source[k]] = kNaN;
+    }
+  }
+  const PointPairsView at_rest{columns, pairs.earlier_v, pairs.current_u, pairs.current_v};
+  return backgroundSuffices(at_rest, {}, options) ? columns : std::vector<float>{};
+}
+
+/// Steps 2 and 3 against one earlier frame; larger distances go into `distance`.
+EarlierFrameReport compareWith(const EarlierFrame& frame, FlowMatches flow,
                                const internal::FlowSelection& selection,
+                               const std::vector<std::uint8_t>& moving_by_memory,
                                const DynamicFeatureFilterInput& input,
                                const DynamicFeatureFilterOptions& options,
                                DynamicFeatureFilterWorkspace& workspace,
                                std::vector<float>& distance) {
   EarlierFrameReport report;
-  report.flow = flowOf(selection, frame, input, options.flow, guess);
+  report.flow = std::move(flow);
   const PointPairsView pairs{report.flow.u, report.flow.v, input.points.u, input.points.v};
   if (options.distance != DistanceKind::kEgoMotion) {
-    report.motion = estimateMotionModel(pairs, input.boxes, options.motion);
+    const std::vector<float> at_rest =
+        columnsAtRest(pairs, selection, moving_by_memory, input.boxes, options.motion);
+    report.by_memory = !at_rest.empty();
+    report.motion =
+        report.by_memory
+            ? estimateMotionModel({at_rest, pairs.earlier_v, pairs.current_u, pairs.current_v}, {},
+                                  options.motion)
+            : estimateMotionModel(pairs, input.boxes, options.motion);
+    report.motion.background_only = report.motion.background_only && !report.by_memory;
     report.used = report.motion.model.kind != TwoViewModelKind::kNone &&
                   report.motion.median_distance <= options.max_median_distance;
     if (report.used) {
@@ -238,13 +290,18 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
   if (distancesWanted(bounded, options)) {
     selection = internal::selectForFlow(bounded.points, bounded.boxes, imageSize(*bounded.pyramid),
                                         budgetOf(options, forms_beliefs));
+    std::vector<std::uint8_t> moving_by_memory;
     for (std::size_t k = 0; k < bounded.earlier.size(); ++k) {
       const EarlierFrame& frame = bounded.earlier[k];
       const FlowMatches guess =
           k == 0 ? FlowMatches{}
                  : prolonged(selection, frame, bounded.earlier[k - 1], result.earlier[k - 1].flow);
-      result.earlier.push_back(
-          compareWith(frame, guess, selection, bounded, options, workspace, result.distance));
+      FlowMatches flow = flowOf(selection, frame, bounded, options.flow, guess);
+      if (k == 0) {  // whose memory it is
+        moving_by_memory = movingByMemory(selection, bounded, flow, options, workspace);
+      }
+      result.earlier.push_back(compareWith(frame, std::move(flow), selection, moving_by_memory,
+                                           bounded, options, workspace, result.distance));
     }
   }
   if (!forms_beliefs) {

@@ -61,32 +61,35 @@ int occupiedCells(const std::vector<Match>& some, const std::vector<Match>& all)
   return static_cast<int>(std::count(occupied.begin(), occupied.end(), true));
 }
 
-/// The matches that the model is estimated from, and whether they are the background's only.
-std::pair<std::vector<Match>, bool> selectMatches(const PointPairsView& pairs,
-                                                  Span<const DetectionBox> boxes,
-                                                  const MotionModelOptions& options) {
+/// The matches, and which of them lie outside the boxes.
+struct SortedMatches {
   std::vector<Match> all;
   std::vector<Match> background;
+
+  bool backgroundSuffices(const MotionModelOptions& options) const {
+    return background.size() >= static_cast<std::size_t>(std::max(options.min_background_matches,
+                                                                  options.min_matches)) &&
+           occupiedCells(background, all) >= options.min_background_cells;
+  }
+};
+
+SortedMatches sortMatches(const PointPairsView& pairs, Span<const DetectionBox> boxes) {
+  SortedMatches sorted;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Match match{{pairs.earlier_u[i], pairs.earlier_v[i]},
                       {pairs.current_u[i], pairs.current_v[i]}};
     if (!match.earlier.allFinite() || !match.current.allFinite()) {
       continue;
     }
-    all.push_back(match);
+    sorted.all.push_back(match);
     const bool in_box = std::any_of(boxes.begin(), boxes.end(), [&](const DetectionBox& box) {
       return box.contains(pairs.current_u[i], pairs.current_v[i]);
     });
     if (!in_box) {
-      background.push_back(match);
+      sorted.background.push_back(match);
     }
   }
-  const bool enough =
-      background.size() >=
-          static_cast<std::size_t>(std::max(options.min_background_matches, options.min_matches)) &&
-      occupiedCells(background, all) >= options.min_background_cells;
-  return enough ? std::make_pair(std::move(background), true)
-                : std::make_pair(std::move(all), false);
+  return sorted;
 }
 
 enum class Estimator { kFundamental, kHomography };
@@ -196,14 +199,22 @@ const char* toString(FundamentalVerdict verdict) noexcept {
   return "invalid";
 }
 
+bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                        const MotionModelOptions& options) {
+  checkOptions(options);
+  checkPointPairs(pairs);
+  return sortMatches(pairs, boxes).backgroundSuffices(options);
+}
+
 MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
                                         const MotionModelOptions& options) {
   checkOptions(options);
   checkPointPairs(pairs);
   MotionModelEstimate estimate;
-  const auto [matches, background_only] = selectMatches(pairs, boxes, options);
+  const SortedMatches sorted = sortMatches(pairs, boxes);
+  estimate.background_only = sorted.backgroundSuffices(options);
+  const std::vector<Match>& matches = estimate.background_only ? sorted.background : sorted.all;
   estimate.matches = matches.size();
-  estimate.background_only = background_only;
   if (matches.size() < static_cast<std::size_t>(options.min_matches)) {
     return estimate;
   }

@@ -138,6 +138,57 @@ TEST(DynamicFeatureFilterBelief, WhatMovedBeforeIsFollowedWithoutABox) {
   EXPECT_TRUE(clip.run(&at_rest).earlier.empty());
 }
 
+TEST(DynamicFeatureFilterBelief, ACrowdThatFillsTheImageIsNotTakenForTheWorld) {
+  // Given more points on the thing than on the walls, and a belief of a frame that shows both
+  Clip clip({1});
+  clip.options.flow_in_boxes = 0;
+  clip.options.motion.min_homography_share = 0.4f;
+  const MotionBelief memory = clip.run().belief;
+  KeyPoints few;
+  std::size_t on_thing = 0;
+  std::size_t on_walls = 0;
+  for (std::size_t i = 0; i < clip.points.size(); ++i) {
+    const bool thing = clip.onThing(i);
+    if (thing || i % 13 == 0) {
+      few.push_back(clip.points.u[i], clip.points.v[i], clip.points.depth[i]);
+      on_thing += thing ? 1 : 0;
+      on_walls += thing ? 0 : 1;
+    }
+  }
+  ASSERT_GT(on_thing, on_walls + on_walls / 4);
+  ASSERT_GT(on_walls, 65U);
+  clip.points = few;
+  // When boxes leave no background
+  clip.boxes = {{-10.0f, -10.0f, 400.0f, 300.0f, kPersonClassId, 1.0f}};
+
+  // Then what is known to move does not say how the camera moves.
+  const auto dynamicOf = [&](const DynamicFeatureFilterResult& result, bool thing) {
+    std::size_t dynamic = 0;
+    for (std::size_t i = 0; i < clip.points.size(); ++i) {
+      dynamic += clip.onThing(i) == thing && result.stage.label[i] == PointLabel::kDynamic ? 1 : 0;
+    }
+    return dynamic;
+  };
+  const DynamicFeatureFilterResult remembering = clip.run(&memory);
+  EXPECT_TRUE(remembering.earlier.at(0).by_memory);
+  EXPECT_FALSE(remembering.earlier.at(0).motion.background_only);
+  EXPECT_LE(remembering.earlier.at(0).motion.matches, on_walls);
+  EXPECT_EQ(dynamicOf(remembering, true), on_thing);
+  EXPECT_EQ(dynamicOf(remembering, false), 0U);
+  // Without a memory the many are the world, and the walls move.
+  const DynamicFeatureFilterResult forgetful = clip.run();
+  EXPECT_FALSE(forgetful.earlier.at(0).by_memory);
+  EXPECT_LT(dynamicOf(forgetful, true), on_thing / 2);
+}
+
+TEST(DynamicFeatureFilterBelief, EnoughBackgroundNeedsNoMemory) {
+  const Clip clip({1});
+  const MotionBelief memory = clip.run().belief;
+  const DynamicFeatureFilterResult result = clip.run(&memory);
+  EXPECT_FALSE(result.earlier.at(0).by_memory);
+  EXPECT_TRUE(result.earlier.at(0).motion.background_only);
+}
+
 TEST(DynamicFeatureFilterBelief, OnlyTheBudgetIsFollowedAndTheOthersAreJudged) {
   const Clip clip({1});
   const DynamicFeatureFilterResult result = clip.run();
@@ -258,7 +309,7 @@ TEST(DynamicFeatureFilterBelief, InputOfAnotherSizeIsNamed) {
   };
   MotionBelief unequal = clip.run().belief;
   unequal.depth.pop_back();
-  EXPECT_NE(message(clip, &unequal).find("updateMotionBelief: memory: u has"), std::string::npos);
+  EXPECT_NE(message(clip, &unequal).find("memory: u has"), std::string::npos);
   Clip other = clip;
   other.depth = clip.depth.rowRange(0, 100);
   EXPECT_EQ(message(other),

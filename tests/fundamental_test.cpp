@@ -251,8 +251,11 @@ TEST(MotionModel, ABackgroundThatIsTooSmallGivesAllPoints) {
   options.min_background_cells = 8;  // a strip at the left has four
   EXPECT_FALSE(estimate(scene, {nearly_all}, options).background_only);
 
+  EXPECT_FALSE(backgroundSuffices(scene.pairs(), std::vector<DetectionBox>{nearly_all}, options));
+
   // Given boxes that hold nothing.
   const DetectionBox inverted{600.0f, 400.0f, 10.0f, 10.0f, kPersonClassId, 1.0f};
+  EXPECT_TRUE(backgroundSuffices(scene.pairs(), std::vector<DetectionBox>{inverted}, options));
   const MotionModelEstimate all = estimate(scene, {inverted});
   EXPECT_TRUE(all.background_only);
   EXPECT_EQ(all.matches, 200U);

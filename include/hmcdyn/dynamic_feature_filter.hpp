@@ -93,6 +93,9 @@ struct EarlierFrameReport {
   FlowMatches flow;            ///< Where the N key points were.
   MotionModelEstimate motion;  ///< The model, and whether F was defined.
   bool used = false;           ///< Its distances count.
+  /// The boxes left too little background, so the model is of what the memory does not know to
+  /// move.
+  bool by_memory = false;
 };
 
 /// What the filter found out about a frame of N key points.
@@ -113,6 +116,9 @@ struct DynamicFeatureFilterWorkspace {
 /// Tracks the key points into every earlier frame, estimates the camera's motion, measures each
 /// point's distance (the largest over the earlier frames whose model holds), labels and weighs the
 /// points, and lets them vote on each other. Pure: the same input and seeds give the same result.
+///
+/// Where boxes cover too much of the image, points in them speak for the camera's motion as well,
+/// but for those that the memory knows to move: a crowd would be taken for the world.
 ///
 /// Without a box and without a memory of something that moves there is nothing to decide: no flow
 /// is computed, and all points are static (flow_background = 0 computes it all the same).

@@ -63,6 +63,12 @@ struct MotionModelEstimate {
   bool fundamentalDefined() const noexcept { return verdict == FundamentalVerdict::kDefined; }
 };
 
+/// Whether the matches outside every box are enough for estimateMotionModel() to leave the others
+/// out.
+/// @throws std::invalid_argument as estimateMotionModel().
+bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                        const MotionModelOptions& options = {});
+
 /// Estimates what the camera's motion does to the background: a fundamental matrix by MAGSAC
 /// (Barath, Noskova, Matas 2019) and a normalised eight-point refit with Sampson weights (Hartley
 /// 1997; Luong, Faugeras 1996). A camera that stands still or only rotates leaves F undefined, and

@@ -217,9 +217,8 @@ inline bool isPlaced(float u, float v, float depth) {
   return std::isfinite(u) && std::isfinite(v) && hasDepth(depth);
 }
 
-inline void collectVotes(const MotionBeliefInput& input, const MotionBelief& memory,
-                         const MotionBelief& current, const MotionBeliefOptions& options,
-                         MotionBeliefWorkspace& workspace) {
+inline void collectVotes(const MotionBeliefInput& input, const MotionBelief& current,
+                         const MotionBeliefOptions& options, MotionBeliefWorkspace& workspace) {
   workspace.votes.reserve(input.points.size());
   for (std::size_t i = 0; i < input.points.size(); ++i) {
     if (isPlaced(current.u[i], current.v[i], current.depth[i]) && !std::isnan(input.distance[i])) {
@@ -230,6 +229,10 @@ inline void collectVotes(const MotionBeliefInput& input, const MotionBelief& mem
                     input.in_box[i] != 0, options));
     }
   }
+}
+
+inline void collectMemory(const MotionBelief& memory, const MotionBeliefOptions& options,
+                          MotionBeliefWorkspace& workspace) {
   workspace.memory.reserve(memory.size());
   workspace.dynamic_memory.reserve(memory.size());
   for (std::size_t k = 0; k < memory.size(); ++k) {
@@ -243,7 +246,10 @@ inline void collectVotes(const MotionBeliefInput& input, const MotionBelief& mem
       }
     }
   }
-  const auto most = static_cast<Eigen::Index>(std::max(input.points.size(), memory.size()));
+}
+
+inline void makeRoom(std::size_t votes, MotionBeliefWorkspace& workspace) {
+  const auto most = static_cast<Eigen::Index>(votes);
   if (workspace.scratch.size() < most) {
     workspace.scratch.resize(most);
   }
@@ -339,7 +345,9 @@ inline MotionBelief updateMotionBelief(const MotionBeliefInput& input, const Mot
       current.depth[i] = options.unmeasured_depth;
     }
   }
-  detail::collectVotes(input, memory, current, options, workspace);
+  detail::collectVotes(input, current, options, workspace);
+  detail::collectMemory(memory, options, workspace);
+  detail::makeRoom(std::max(n, memory.size()), workspace);
   current.belief.assign(n, kNaN);
   current.weight.assign(n, 0.0f);
   for (std::size_t i = 0; i < n; ++i) {
@@ -352,6 +360,41 @@ inline MotionBelief updateMotionBelief(const MotionBeliefInput& input, const Mot
     current.weight[i] = workspace.surface.is_dragged[i] != 0 ? 0.0f : current.weight[i];
   }
   return current;
+}
+
+/// Which of N points the frame before believed to move, where they were then: flags for matches
+/// that are not to speak for the camera's motion.
+///
+/// @param depth N depths of their surfaces (m). @param earlier_u, earlier_v N pixels in the frame
+/// of the memory; not finite = no match.
+/// @return N flags, 1 = moved; 0 also where nothing is remembered.
+/// @throws std::invalid_argument when sizes differ or an option is out of range.
+inline std::vector<std::uint8_t> rememberedToMove(Span<const float> depth,
+                                                  Span<const float> earlier_u,
+                                                  Span<const float> earlier_v,
+                                                  const MotionBelief& memory,
+                                                  const MotionBeliefOptions& options,
+                                                  MotionBeliefWorkspace& workspace) {
+  checkOptions(options);
+  checkBelief(memory, "rememberedToMove: memory");
+  const std::size_t n = depth.size();
+  if (earlier_u.size() != n || earlier_v.size() != n) {
+    throw std::invalid_argument("rememberedToMove: " + std::to_string(n) + " depths, but " +
+                                std::to_string(earlier_u.size()) + " columns and " +
+                                std::to_string(earlier_v.size()) + " rows; expected equal sizes");
+  }
+  detail::collectMemory(memory, options, workspace);
+  detail::makeRoom(memory.size(), workspace);
+  std::vector<std::uint8_t> moved(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (detail::isPlaced(earlier_u[i], earlier_v[i], depth[i])) {
+      const detail::VoteSum sum =
+          detail::countVotes(workspace.memory, earlier_u[i], earlier_v[i], depth[i],
+                             options.memory_sigma, options, workspace.scratch);
+      moved[i] = sum.weight > 0.0f && sum.value > options.dynamic_belief * sum.weight ? 1 : 0;
+    }
+  }
+  return moved;
 }
 
 /// What applyMotionBelief makes of points whose flow may not be their own.

@@ -25,7 +25,7 @@ Eigen::Vector3d worldPoint(const Frame& frame, std::size_t key_point, const Pinh
 
 /// Static beyond doubt: outside people, or clear of the moving person in depth.
 bool mayEnterMap(const Frame& frame, std::size_t key_point) {
-  constexpr float kClearOfPerson = 0.5f;
+  constexpr float kClearOfPerson = 0.8f;
   switch (frame.label[key_point]) {
     case PointLabel::kStatic:
       return frame.in_person[key_point] == 0;

@@ -41,6 +41,7 @@ void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
   }
   for (const EarlierFrameReport& report : filtered.earlier) {
     ++models[hmcdyn::toString(report.motion.model.kind)];
+    models_by_memory += report.by_memory ? 1 : 0;
     ++fundamental[hmcdyn::toString(report.motion.verdict)];
   }
 }
@@ -195,6 +196,7 @@ nlohmann::json toJson(const RunCounts& counts) {
           {"key_points", counts.key_points},
           {"labels", counts.labels},
           {"motion_models", counts.models},
+          {"motion_models_by_memory", counts.models_by_memory},
           {"fundamental_verdicts", counts.fundamental},
           {"tracking_failures", counts.failures},
           {"lost_frames", counts.lost},

@@ -132,8 +132,8 @@ TEST(Map, PeopleAndUncertainPointsStayOut) {
   frame.in_person[0] = 1;                   // a person who stands still
   frame.label[1] = PointLabel::kDynamic;    // moves
   frame.label[2] = PointLabel::kUnmatched;  // nobody knows
-  frame.label[3] = PointLabel::kSuspect;    // as deep as the person
-  frame.weight[3] = 0.2f;
+  frame.label[3] = PointLabel::kSuspect;    // little deeper than the person
+  frame.weight[3] = 0.7f;
   frame.label[4] = PointLabel::kSuspect;  // background seen past the person
   frame.weight[4] = 0.9f;
   Map map(kCamera, {});
