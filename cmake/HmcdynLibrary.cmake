@@ -73,8 +73,9 @@ if(HMCDYN_WITH_OPTIMIZATION)
     src/pose_refinement.cpp src/pose_refinement_collapsed.cpp src/pose_refinement_input.cpp
     src/pose_refinement_kernel.cpp src/pose_refinement_plain.cpp src/pose_refinement_solver.cpp)
   # The square root as one instruction: errno is not read. Sums keep the order that is written.
-  set_source_files_properties(src/pose_refinement_kernel.cpp PROPERTIES COMPILE_OPTIONS
-                                                                        -fno-math-errno)
+  set_source_files_properties(
+    src/pose_refinement_collapsed.cpp src/pose_refinement_kernel.cpp
+    PROPERTIES COMPILE_OPTIONS -fno-math-errno)
   target_link_libraries(
     hmcdyn_optimization
     PUBLIC hmcdyn_core

@@ -14,10 +14,10 @@ class Cholesky6 {
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-  /// Reads the lower triangle. A matrix that is not positive definite gives smallestPivot() <= 0
-  /// or NaN, and solutions that mean nothing.
+  /// Reads the lower triangle. A matrix that is not positive definite has no pivotsExceed(0),
+  /// and solutions that mean nothing.
   void compute(const Matrix6d& h) {
-    smallest_pivot_ = 1.0;
+    diagonal_ = h.diagonal();
     Matrix6d scaled;  // L D
 #pragma GCC unroll 6
     for (int j = 0; j < 6; ++j) {
@@ -39,13 +39,13 @@ class Cholesky6 {
         lower_(i, j) = sum * inverse_pivots_[j];
       }
     }
-    const Vector6d shares = pivots_.cwiseQuotient(h.diagonal());
-    smallest_pivot_ = shares.allFinite() ? shares.minCoeff() : 0.0;
   }
 
-  /// The least share of a diagonal entry of H that the columns before it leave: 1 for a diagonal
-  /// matrix, 0 for a singular one, whatever the units of its rows.
-  double smallestPivot() const { return smallest_pivot_; }
+  /// Whether the columns before leave of each diagonal entry of H more than that share: 1 is left
+  /// of a diagonal matrix, 0 of a singular one, whatever the units of its rows.
+  bool pivotsExceed(double share) const {
+    return ((pivots_ - share * diagonal_).array() > 0.0).all() && pivots_.allFinite();
+  }
 
   /// Writes the upper triangle of U = D^1/2 L^T, for which U^T U = H, and returns y = U^-T b.
   template <class Upper>
@@ -89,7 +89,22 @@ class Cholesky6 {
         lower_inverse(i, j) = sum;
       }
     }
-    return lower_inverse.transpose() * inverse_pivots_.asDiagonal() * lower_inverse;
+    // L^-T D^-1 L^-1, of which column i of L^-1 starts in row i.
+    Matrix6d inverse;
+#pragma GCC unroll 6
+    for (int i = 0; i < 6; ++i) {
+#pragma GCC unroll 6
+      for (int j = 0; j <= i; ++j) {
+        double sum = 0.0;
+#pragma GCC unroll 6
+        for (int k = i; k < 6; ++k) {
+          sum += lower_inverse(k, i) * inverse_pivots_[k] * lower_inverse(k, j);
+        }
+        inverse(i, j) = sum;
+        inverse(j, i) = sum;
+      }
+    }
+    return inverse;
   }
 
  private:
@@ -106,8 +121,7 @@ class Cholesky6 {
   }
 
   Matrix6d lower_;  // below the diagonal
-  Vector6d pivots_, inverse_pivots_;
-  double smallest_pivot_ = 0.0;
+  Vector6d diagonal_, pivots_, inverse_pivots_;
 };
 
 }  // namespace hmcdyn::detail

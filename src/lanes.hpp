@@ -56,9 +56,9 @@ inline Lanes squareRoot(const Lanes& a) {
 /// The lanes' sum.
 inline double total(const Lanes& a) {
 #if HMCDYN_VECTOR_LANES
-  double sum = 0.0;
-  for (std::size_t k = 0; k < kLanes; ++k) {
-    sum += a[k];
+  double sum = a[0] + a[kLanes / 2];
+  for (std::size_t k = 1; k < kLanes / 2; ++k) {
+    sum += a[k] + a[k + kLanes / 2];
   }
   return sum;
 #else

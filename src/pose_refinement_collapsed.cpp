@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <string>
+#include <utility>
 
 #include "pose_refinement_descent.hpp"
 #include "pose_refinement_input.hpp"
@@ -84,19 +84,15 @@ void CollapsedPoseProblem::choosePoints(const PoseObservations& observations) {
 
 template <class Value>
 void CollapsedPoseProblem::fill(BlockField PointBlock::*field, const Value& value) {
-  std::size_t j = 0;
-  for (PointBlock& block : points_.blocks) {
-    BlockField& entries = block.*field;
-    if (index_.empty() && j + kBlock <= count_) {
-      for (std::size_t k = 0; k < kBlock; ++k) {
-        entries[k] = value(j + k);
-      }
-    } else {
-      for (std::size_t k = 0; k < kBlock && j + k < count_; ++k) {
-        entries[k] = value(indexOf(j + k));
-      }
+  const std::size_t full = index_.empty() ? count_ / kBlock : 0;
+  for (std::size_t b = 0; b < full; ++b) {
+    BlockField& entries = points_.blocks[b].*field;
+    for (std::size_t k = 0; k < kBlock; ++k) {
+      entries[k] = value(b * kBlock + k);
     }
-    j += kBlock;
+  }
+  for (std::size_t j = full * kBlock; j < count_; ++j) {
+    (points_.blocks[j / kBlock].*field)[j % kBlock] = value(indexOf(j));
   }
 }
 
@@ -212,6 +208,9 @@ SolverOutcome CollapsedPoseProblem::solve(bool robust) {
   descent.current = &current_;
   descent.candidate = &candidate_;
   descend(descent);
+  if (descent.current != &current_) {
+    std::swap(current_, candidate_);
+  }
 
   outcome.final_cost = current_.system.cost;
   outcome.iterations = descent.iterations;

@@ -32,7 +32,7 @@ struct Descent {
   const CollapsedPoints* points = nullptr;
   const PoseRefinementOptions* options = nullptr;
   CollapseVariant variant;
-  Linearisation* current = nullptr;    ///< Where TinySolver linearised last.
+  Linearisation* current = nullptr;    ///< Where TinySolver linearised last: the minimum, then.
   Linearisation* candidate = nullptr;  ///< Where it considers to go.
 
   Eigen::Matrix<double, 6, 1> current_steps = Eigen::Matrix<double, 6, 1>::Zero();
@@ -78,7 +78,7 @@ class DescentFunction {
   void arriveAt(const Eigen::Matrix<double, 6, 1>& steps) const {
     Descent& d = *descent_;
     if (steps != d.current_steps) {
-      std::swap(*d.current, *d.candidate);
+      std::swap(d.current, d.candidate);
       d.current_steps = steps;
     }
   }
@@ -88,8 +88,7 @@ class DescentFunction {
     if (d.stop != nullptr) {
       return Eigen::Matrix<double, 7, 1>::Zero();
     }
-    const Eigen::Matrix<double, 6, 1> step = steps - d.current_steps;
-    PoseManifold().Plus(d.current->pose.data(), step.data(), d.candidate->pose.data());
+    d.candidate->pose = moved(d.current->pose, steps - d.current_steps);
     d.points->linearise(*d.candidate, d.variant);
     ++d.iterations;
     const double cost = d.current->system.cost;

@@ -264,23 +264,26 @@ CollapsedSystem systemOf(const Sums& sums) {
   const TranslationSums& t = sums.t;
   const RotationSums& r = sums.r;
   const GradientSums& g = sums.g;
-  Eigen::Matrix<double, 6, 6> h;
-  h.row(0) << total(r.h00), total(r.h01), total(r.h02), total(t.h03), total(t.h04), total(t.h05);
-  h.row(1) << 0.0, total(r.h11), total(r.h12), total(t.h13), total(t.h14), total(t.h15);
-  h.row(2) << 0.0, 0.0, total(r.h22), total(t.h23), total(t.h24), 0.0;
-  h.row(3) << 0.0, 0.0, 0.0, total(t.h33), 0.0, total(t.h35);
-  h.row(4) << 0.0, 0.0, 0.0, 0.0, total(t.h44), total(t.h45);
-  h.row(5) << 0.0, 0.0, 0.0, 0.0, 0.0, total(t.h55);
-  h(2, 5) = total(sums.h25_third) - h(0, 3) - h(1, 4);
-  CollapsedSystem system;
-  system.normal = h.selfadjointView<Eigen::Upper>();
+  const double h03 = total(t.h03);
+  const double h14 = total(t.h14);
+  CollapsedSystem system;  // the lower triangle, column by column
+  Eigen::Matrix<double, 6, 6>& h = system.normal;
+  h.col(0) << total(r.h00), total(r.h01), total(r.h02), h03, total(t.h04), total(t.h05);
+  h.col(1).tail<5>() << total(r.h11), total(r.h12), total(t.h13), h14, total(t.h15);
+  h.col(2).tail<4>() << total(r.h22), total(t.h23), total(t.h24), total(sums.h25_third) - h03 - h14;
+  h.col(3).tail<3>() << total(t.h33), 0.0, total(t.h35);
+  h.col(4).tail<2>() << total(t.h44), total(t.h45);
+  h(5, 5) = total(t.h55);
+  for (Eigen::Index column = 1; column < 6; ++column) {
+    h.col(column).head(column) = h.row(column).head(column).transpose();
+  }
   system.gradient << -total(g.g0), -total(g.g1), -total(g.g2), -total(g.g3), -total(g.g4),
       -total(g.g5);
   // The diagonal bounds the other entries.
-  const bool feasible = total(sums.c.behind) == 0.0 && system.normal.diagonal().allFinite() &&
-                        system.gradient.allFinite();
   const double cost = total(sums.c.cost);
-  system.cost = feasible && std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+  const bool feasible =
+      total(sums.c.behind) == 0.0 && std::isfinite(cost + h.trace() + system.gradient.lpNorm<1>());
+  system.cost = feasible ? cost : std::numeric_limits<double>::infinity();
   return system;
 }
 

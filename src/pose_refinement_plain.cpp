@@ -41,7 +41,9 @@ SolverOutcome PlainPoseProblem::solve(bool robust) {
   if (solved.outcome.usable) {
     pose_ = solved.pose;
   }
-  return std::move(solved.outcome);
+  message_ = std::move(solved.message);
+  solved.outcome.message = message_;
+  return solved.outcome;
 }
 
 Eigen::Matrix<double, 6, 6> PlainPoseProblem::information() const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <hmcdyn/pose_refinement.hpp>
@@ -37,6 +38,7 @@ class PlainPoseProblem final : public PoseProblem {
   std::vector<std::uint8_t> inlier_;
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   bool robust_ = false;
+  std::string message_;  // Ceres' own of the last solve
 };
 
 }  // namespace hmcdyn::detail

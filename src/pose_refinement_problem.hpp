@@ -5,7 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ struct SolverOutcome {
   int iterations = 0;
   bool usable = false;  ///< The pose is finite and no worse than the start.
   bool converged = false;
-  std::string message;
+  std::string_view message;  ///< Until the next solve().
 };
 
 class PoseProblem {

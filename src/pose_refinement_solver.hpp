@@ -43,9 +43,12 @@ using PoseManifoldBase = ceres::Manifold;
 using PoseManifoldBase = ceres::LocalParameterization;
 #endif
 
-/// The steps of a pose: delta = (omega, v) moves (R, t) to (Exp(omega) R, Exp(omega) t + v), a
-/// motion in the camera's frame. The world's frame does not enter, so that the same problem told
-/// in another world frame takes the same steps.
+/// A step of a pose: delta = (omega, v) moves (R, t) to (Exp(omega) R, Exp(omega) t + v), a motion
+/// in the camera's frame. The world's frame does not enter, so that the same problem told in
+/// another world frame takes the same steps.
+PoseVector moved(const PoseVector& pose, const Eigen::Matrix<double, 6, 1>& delta);
+
+/// These steps for Ceres.
 class PoseManifold final : public PoseManifoldBase {
  public:
   bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
@@ -89,7 +92,8 @@ std::unique_ptr<ceres::LossFunction> makeLoss(const WeightedPoint& point,
 
 struct PoseOutcome {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  SolverOutcome outcome;
+  SolverOutcome outcome;  ///< Without its message.
+  std::string message;
 };
 
 /// Minimises sum lambda_i^2 rho(|e_i|^2) over the points with active[i] != 0, all of which must

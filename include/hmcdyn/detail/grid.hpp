@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <hmcdyn/detail/bits.hpp>
@@ -40,17 +41,18 @@ struct Range {
   float high;
 };
 
-/// Over the coordinates that are there; low > high without any.
+/// Over the coordinates that are there; low > high without any. A block at a time, not a few lanes:
+/// GCC then keeps the vectors in registers.
 inline Range rangeOf(const std::vector<float>& values) {
-  std::array<float, kLanes> low{};
-  std::array<float, kLanes> high{};
+  std::array<float, kBlock> low{};
+  std::array<float, kBlock> high{};
   low.fill(std::numeric_limits<float>::infinity());
   high.fill(-std::numeric_limits<float>::infinity());
-  for (std::size_t block = 0; block < values.size(); block += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const float value = values[block + lane];
-      low[lane] = value < low[lane] ? value : low[lane];
-      high[lane] = value > high[lane] ? value : high[lane];
+  for (std::size_t block = 0; block < values.size(); block += kBlock) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const float value = values[block + i];
+      low[i] = value < low[i] ? value : low[i];
+      high[i] = value > high[i] ? value : high[i];
     }
   }
   return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
@@ -91,92 +93,124 @@ struct Interval {
   std::uint32_t size() const noexcept { return end - begin; }
 };
 
-/// Points sorted by cell. Only cells that hold points are kept, in the order of their numbers.
+/// A set of cell numbers, a bit a number.
+class CellSet {
+ public:
+  void clear(const GridLayout& layout) { words_.assign(layout.words(), 0); }
+  std::size_t words() const noexcept { return words_.size(); }
+  std::uint64_t word(std::size_t w) const noexcept { return words_[w]; }
+
+  /// `present` = false leaves the set as it is, without a branch.
+  void insert(std::uint32_t number, bool present = true) noexcept {
+    words_[number / 64] |= std::uint64_t{present ? 1U : 0U} << (number % 64);
+  }
+  void erase(std::uint32_t number) noexcept {
+    words_[number / 64] &= ~(std::uint64_t{1} << (number % 64));
+  }
+  /// Which of the numbers first .. first + 4 are there, from the lowest bit.
+  std::uint64_t window(std::uint32_t first) const noexcept {
+    const std::uint32_t shift = first % 64;
+    const std::uint64_t low = words_[first / 64] >> shift;
+    const std::uint64_t high = words_[first / 64 + 1] << 1U << (63U - shift);
+    return (low | high) & 0b11111U;
+  }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+/// Points sorted by cell. Only cells that hold points are kept, in the order of their numbers: a
+/// cell's position.
 class Grid {
  public:
-  std::vector<float> x;              ///< In the order of the cells; room for kLanes more.
+  std::vector<float> x;              ///< In the order of the cells; room for kBlock more.
   std::vector<float> y;              ///< The same.
   std::vector<std::uint32_t> point;  ///< What the caller calls it.
   std::vector<std::uint32_t> key;    ///< Of each cell: its number.
   std::vector<std::uint32_t> begin;  ///< Of each cell: its first point; with an end.
+  std::vector<std::uint32_t> cell;   ///< Of each point, in the caller's order; padded.
 
   std::size_t cells() const noexcept { return key.size(); }
 
   void fill(const PlanarPoints& points, const GridLayout& layout) {
-    cell_of_point_.resize(points.padded());
     numberCells(points, layout);
-    listOccupiedCells(layout);
+    listOccupiedCells(points.size, layout);
     countPoints(points.size);
-    x.resize(points.size + kLanes);
-    y.resize(points.size + kLanes);
+    x.resize(points.size + kBlock);
+    y.resize(points.size + kBlock);
     point.resize(points.size);
     for (std::size_t i = 0; i < points.size; ++i) {
-      const std::uint32_t to = next_[cell_of_point_[i]]++;
+      const std::uint32_t to = begin[cell[i]] + place_[i];
       x[to] = points.x[i];
       y[to] = points.y[i];
       point[to] = static_cast<std::uint32_t>(i);
     }
   }
 
-  /// The cells (by position) whose numbers lie in [first, first + count).
-  Interval cellsIn(std::uint32_t first, std::uint32_t count) const noexcept {
-    return {rankOf(first), rankOf(first + count)};
+  /// Position of the cell of that number, or of the next one that holds points.
+  std::uint32_t positionOf(std::uint32_t number) const noexcept {
+    const std::uint64_t below = (std::uint64_t{1} << (number % 64)) - 1;
+    return rank_[number / 64] + countOnes(occupied_.word(number / 64) & below);
+  }
+
+  /// The cells with numbers first .. first + 4.
+  Interval cellsFrom(std::uint32_t first) const noexcept {
+    const std::uint32_t position = positionOf(first);
+    return {position, position + countOnes(occupied_.window(first))};
   }
 
  private:
-  std::uint32_t rankOf(std::uint32_t number) const noexcept {
-    const std::uint64_t below = (std::uint64_t{1} << (number % 64)) - 1;
-    return rank_[number / 64] + countOnes(occupied_[number / 64] & below);
-  }
-
   void numberCells(const PlanarPoints& points, const GridLayout& layout) {
+    cell.resize(points.padded());
     // NaN compares false: it lands in the trash.
     const double last_row = layout.rows + GridLayout::kMargin;
     const double last_column = layout.columns;
     const auto stride = static_cast<std::int32_t>(layout.stride());
     const auto origin = static_cast<std::int32_t>(layout.origin());
     for (std::size_t block = 0; block < points.padded(); block += kLanes) {
+      HMCDYN_KEEP_LOOP
       for (std::size_t i = block; i < block + kLanes; ++i) {
         const double row = (static_cast<double>(points.x[i]) - layout.x) * layout.cells_per_unit;
         const double column = (static_cast<double>(points.y[i]) - layout.y) * layout.cells_per_unit;
         const auto r = static_cast<std::int32_t>(row < last_row ? row : last_row);
         const auto c = static_cast<std::int32_t>(column < last_column ? column : last_column);
-        cell_of_point_[i] = static_cast<std::uint32_t>(r * stride + c + origin);
+        cell[i] = static_cast<std::uint32_t>(r * stride + c + origin);
       }
-    }
-    occupied_.assign(layout.words(), 0);
-    for (std::size_t i = 0; i < points.size; ++i) {
-      occupied_[cell_of_point_[i] / 64] |= std::uint64_t{1} << (cell_of_point_[i] % 64);
     }
   }
 
-  void listOccupiedCells(const GridLayout& layout) {
+  void listOccupiedCells(std::size_t points, const GridLayout& layout) {
+    occupied_.clear(layout);
+    for (std::size_t i = 0; i < points; ++i) {
+      occupied_.insert(cell[i]);
+    }
     key.clear();
-    rank_.resize(layout.words());
-    for (std::size_t w = 0; w < occupied_.size(); ++w) {
+    rank_.resize(occupied_.words());
+    for (std::size_t w = 0; w < occupied_.words(); ++w) {
       rank_[w] = static_cast<std::uint32_t>(key.size());
-      for (std::uint64_t rest = occupied_[w]; rest != 0; rest &= rest - 1) {
+      for (std::uint64_t rest = occupied_.word(w); rest != 0; rest &= rest - 1) {
         key.push_back(static_cast<std::uint32_t>(64 * w) + lowestOne(rest));
       }
     }
   }
 
+  /// Turns the numbers of the points' cells into positions.
   void countPoints(std::size_t points) {
     begin.assign(key.size() + 1, 0);
+    place_.resize(points);
     for (std::size_t i = 0; i < points; ++i) {
-      cell_of_point_[i] = rankOf(cell_of_point_[i]);
-      ++begin[cell_of_point_[i] + 1];
+      cell[i] = positionOf(cell[i]);
+      place_[i] = begin[cell[i]]++;
     }
-    for (std::size_t c = 0; c < key.size(); ++c) {
-      begin[c + 1] += begin[c];
+    std::uint32_t before = 0;
+    for (std::uint32_t& of_cell : begin) {
+      before += std::exchange(of_cell, before);
     }
-    next_.assign(begin.begin(), begin.end());
   }
 
-  std::vector<std::uint64_t> occupied_;       ///< A bit a cell number.
-  std::vector<std::uint32_t> rank_;           ///< Occupied cells before each word.
-  std::vector<std::uint32_t> cell_of_point_;  ///< Number, later position, in the caller's order.
-  std::vector<std::uint32_t> next_;           ///< Of each cell: where its next point goes.
+  CellSet occupied_;
+  std::vector<std::uint32_t> rank_;   ///< Occupied cells before each word of the set.
+  std::vector<std::uint32_t> place_;  ///< Of each point: how many of its cell come before.
 };
 
 }  // namespace hmcdyn::detail

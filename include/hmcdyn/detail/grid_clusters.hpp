@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Density clusters of many points in the plane over a grid of side radius / sqrt 2 (Gunawan, "A
 // faster algorithm for DBSCAN", 2013): the points of a cell are neighbours of each other, so cells
-// with MinPoints points need no count, and whole cells are united.
+// with MinPoints points need no count, and whole cells are joined.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include <hmcdyn/detail/bits.hpp>
 #include <hmcdyn/detail/clustering_result.hpp>
 #include <hmcdyn/detail/grid.hpp>
 #include <hmcdyn/detail/planar_points.hpp>
-#include <hmcdyn/detail/union_find.hpp>
 
 namespace hmcdyn::detail {
 
@@ -22,9 +23,11 @@ namespace hmcdyn::detail {
 struct GridWorkspace {
   Grid grid;
   std::vector<std::uint32_t> core_end;  ///< Of each cell: its core points come first, up to here.
-  UnionFind sets;                       ///< Of cells.
+  CellSet unreached;                    ///< With a core point that no cluster has reached yet.
+  std::vector<std::uint32_t> members;   ///< Cells of one cluster.
+  std::vector<int> cluster;             ///< Of each cell: its cluster, or kNoise.
   std::vector<UnnumberedCluster> clusters;
-  std::vector<int> number;  ///< By root cell.
+  std::vector<int> number;  ///< Of each cluster.
 };
 
 /// The steps of clusterByGrid.
@@ -32,10 +35,9 @@ class GridClusters {
  public:
   GridClusters(const GridLayout& layout, float radius, GridWorkspace& workspace)
       : disc_(radius),
+        layout_(layout),
         stride_(layout.stride()),
         grid_(workspace.grid),
-        core_end_(workspace.core_end),
-        sets_(workspace.sets),
         workspace_(workspace) {
     // The trash, if there, is the last cell.
     cells_ = static_cast<std::uint32_t>(grid_.cells());
@@ -46,40 +48,54 @@ class GridClusters {
 
   void run(int min_points, Clustering& result) {
     findCorePoints(static_cast<std::uint32_t>(min_points));
-    uniteCells();
+    growClusters();
     number(result);
     writeLabels(result);
   }
 
  private:
-  /// Cells with a row offset of `row` and column offsets from `from` to `to`.
-  Interval window(std::uint32_t cell, int row, int from, int to) const {
-    const std::uint32_t first =
-        grid_.key[cell] + static_cast<std::uint32_t>(row * static_cast<int>(stride_) + from);
-    return grid_.cellsIn(first, static_cast<std::uint32_t>(to - from + 1));
+  /// Number of the first of the five cells of a row around a cell.
+  std::uint32_t rowAround(std::uint32_t cell, int row) const {
+    return grid_.key[cell] + static_cast<std::uint32_t>(row * static_cast<int>(stride_) - 2);
+  }
+
+  Interval coresOf(std::uint32_t cell) const {
+    return {grid_.begin[cell], workspace_.core_end[cell]};
+  }
+
+  /// Which of up to kBlock points from `first` are neighbours of (x, y).
+  std::uint32_t neighboursFrom(std::uint32_t first, std::uint32_t end, float x, float y) const {
+    const std::uint32_t near =
+        disc_.neighboursInBlock(grid_.x.data() + first, grid_.y.data() + first, x, y);
+    return end - first < kBlock ? near & ((1U << (end - first)) - 1) : near;
   }
 
   std::uint32_t countWithin(float x, float y, Interval points) const {
-    std::array<std::uint32_t, kLanes> count{};
-    for (std::uint32_t block = points.begin; block < points.end; block += kLanes) {
-      const std::uint32_t left = points.end - block;
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-        const bool within = disc_.contains(grid_.x[block + lane] - x, grid_.y[block + lane] - y);
-        count[lane] += (within ? 1U : 0U) & (lane < left ? 1U : 0U);
+    std::uint32_t count = 0;
+    for (std::uint32_t block = points.begin; block < points.end; block += kBlock) {
+      count += countOnes(neighboursFrom(block, points.end, x, y));
+    }
+    return count;
+  }
+
+  bool anyWithin(float x, float y, Interval points) const {
+    for (std::uint32_t block = points.begin; block < points.end; block += kBlock) {
+      if (neighboursFrom(block, points.end, x, y) != 0) {
+        return true;
       }
     }
-    std::uint32_t sum = 0;
-    for (const std::uint32_t of_lane : count) {
-      sum += of_lane;
-    }
-    return sum;
+    return false;
   }
 
   void findCorePoints(std::uint32_t min_points) {
-    core_end_.resize(cells_);
+    workspace_.core_end.resize(cells_);
+    workspace_.unreached.clear(layout_);
     for (std::uint32_t cell = 0; cell < cells_; ++cell) {
       const Interval own{grid_.begin[cell], grid_.begin[cell + 1]};
-      core_end_[cell] = own.size() >= min_points ? own.end : coresFirst(cell, own, min_points);
+      const std::uint32_t core_end =
+          own.size() >= min_points ? own.end : coresFirst(cell, own, min_points);
+      workspace_.core_end[cell] = core_end;
+      workspace_.unreached.insert(grid_.key[cell], core_end > own.begin);
     }
   }
 
@@ -89,7 +105,7 @@ class GridClusters {
     std::uint32_t candidates = 0;
     constexpr std::array<int, 5> kRows{0, 1, -1, 2, -2};
     for (std::size_t k = 0; k < kRows.size(); ++k) {
-      const Interval cells = window(cell, kRows[k], -2, 2);
+      const Interval cells = grid_.cellsFrom(rowAround(cell, kRows[k]));
       near[k] = {grid_.begin[cells.begin], grid_.begin[cells.end]};
       candidates += near[k].size();
     }
@@ -112,133 +128,154 @@ class GridClusters {
     return core_end;
   }
 
-  Interval coresOf(std::uint32_t cell) const { return {grid_.begin[cell], core_end_[cell]}; }
-
   /// Whether a core point of one is a neighbour of a core point of the other.
   bool connected(Interval a, Interval b) const {
     for (std::uint32_t i = a.begin; i < a.end; ++i) {
-      for (std::uint32_t j = b.begin; j < b.end; ++j) {
-        if (disc_.contains(grid_.x[i] - grid_.x[j], grid_.y[i] - grid_.y[j])) {
-          return true;
-        }
+      if (anyWithin(grid_.x[i], grid_.y[i], b)) {
+        return true;
       }
     }
     return false;
   }
 
-  void uniteWith(std::uint32_t cell, Interval others) {
-    const Interval cores = coresOf(cell);
-    for (std::uint32_t other = others.begin; other < others.end; ++other) {
-      if (sets_.find(cell) != sets_.find(other) && connected(cores, coresOf(other))) {
-        sets_.unite(cell, other);
+  /// From the first cell that no cluster has reached, time after time.
+  void growClusters() {
+    workspace_.cluster.assign(grid_.cells(), kNoise);
+    workspace_.clusters.clear();
+    for (std::size_t w = 0; w < workspace_.unreached.words(); ++w) {
+      while (workspace_.unreached.word(w) != 0) {
+        growFrom(static_cast<std::uint32_t>(64 * w) + lowestOne(workspace_.unreached.word(w)));
       }
     }
   }
 
-  /// Nearest cells first: what they unite, cells further away need not compare.
-  void uniteCells() {
-    sets_.reset(cells_);
-    for (std::uint32_t cell = 0; cell < cells_; ++cell) {
-      if (coresOf(cell).size() > 0) {
-        uniteWith(cell, window(cell, 0, 1, 1));
-        uniteWith(cell, window(cell, 1, -1, 1));
+  /// Cells of one row around a cell: a bit a column, from two before it.
+  struct RowOfRing {
+    int row;
+    std::uint64_t columns;
+  };
+  static constexpr std::array<RowOfRing, 3> kNearRing{{{-1, 0b01110}, {0, 0b01010}, {1, 0b01110}}};
+  static constexpr std::array<RowOfRing, 5> kFarRing{
+      {{-2, 0b11111}, {-1, 0b10001}, {0, 0b10001}, {1, 0b10001}, {2, 0b11111}}};
+
+  /// The cells around are joined first: what they lead to, cells further away need not compare.
+  void growFrom(std::uint32_t number) {
+    std::vector<std::uint32_t>& members = workspace_.members;
+    members.clear();
+    join(number);
+    std::size_t next_near = 0;
+    std::size_t next_far = 0;
+    while (next_far < members.size()) {
+      while (next_near < members.size()) {
+        joinConnected(members[next_near++], kNearRing);
       }
+      joinConnected(members[next_far++], kFarRing);
     }
-    for (std::uint32_t cell = 0; cell < cells_; ++cell) {
-      if (coresOf(cell).size() > 0) {
-        uniteWith(cell, window(cell, 0, 2, 2));
-        uniteWith(cell, window(cell, 1, -2, 2));
-        uniteWith(cell, window(cell, 2, -2, 2));
-      }
-    }
+    workspace_.clusters.push_back({std::numeric_limits<float>::infinity(), 0.0f, members.front()});
   }
 
-  /// A cluster's root is its first cell, and rows grow with x: its lexicographically smallest core
-  /// point lies in that cell's row.
-  void number(Clustering& result) {
-    workspace_.number.resize(cells_);
-    std::vector<UnnumberedCluster>& clusters = workspace_.clusters;
-    clusters.clear();
-    for (std::uint32_t cell = 0; cell < cells_; ++cell) {
-      if (coresOf(cell).size() > 0 && sets_.find(cell) == cell) {
-        clusters.push_back({std::numeric_limits<float>::infinity(), 0.0f, cell});
-      }
-    }
-    result.clusters = static_cast<int>(clusters.size());
-    if (clusters.size() > 1) {
-      for (UnnumberedCluster& cluster : clusters) {
-        findSmallestCore(cluster);
-      }
-    }
-    numberClusters(clusters, workspace_.number);
+  void join(std::uint32_t number) {
+    const std::uint32_t cell = grid_.positionOf(number);
+    workspace_.unreached.erase(number);
+    workspace_.cluster[cell] = static_cast<int>(workspace_.clusters.size());
+    workspace_.members.push_back(cell);
   }
 
-  void findSmallestCore(UnnumberedCluster& cluster) {
-    const std::uint32_t root = cluster.index;
-    const std::uint32_t row = grid_.key[root] / stride_;
-    const std::uint32_t row_end = (row + 1) * stride_;
-    for (std::uint32_t cell = root; cell < cells_ && grid_.key[cell] < row_end; ++cell) {
-      const Interval cores = coresOf(cell);
-      if (sets_.find(cell) != root) {
-        continue;
-      }
-      for (std::uint32_t i = cores.begin; i < cores.end; ++i) {
-        const UnnumberedCluster candidate{grid_.x[i], grid_.y[i], root};
-        cluster = candidate < cluster ? candidate : cluster;
-      }
-    }
-  }
-
-  void writeLabels(Clustering& result) {
-    for (std::uint32_t cell = 0; cell < cells_; ++cell) {
-      const Interval cores = coresOf(cell);
-      if (cores.size() > 0) {
-        const int label = workspace_.number[sets_.find(cell)];
-        for (std::uint32_t i = cores.begin; i < cores.end; ++i) {
-          result.label[grid_.point[i]] = label;
-          result.is_core[grid_.point[i]] = 1;
+  /// Joins the unreached cells of a ring around a cell that are connected with it.
+  template <class Ring>
+  void joinConnected(std::uint32_t cell, const Ring& ring) {
+    for (const RowOfRing& of_ring : ring) {
+      const std::uint32_t first = rowAround(cell, of_ring.row);
+      for (std::uint64_t rest = workspace_.unreached.window(first) & of_ring.columns; rest != 0;
+           rest &= rest - 1) {
+        const std::uint32_t number = first + lowestOne(rest);
+        if (connected(coresOf(cell), coresOf(grid_.positionOf(number)))) {
+          join(number);
         }
       }
-      if (core_end_[cell] < grid_.begin[cell + 1]) {
-        settle(cell, result);
+    }
+  }
+
+  /// A cluster's index is its first cell, and rows grow with x: its lexicographically smallest core
+  /// point lies in that cell's row.
+  void number(Clustering& result) {
+    std::vector<UnnumberedCluster>& clusters = workspace_.clusters;
+    result.clusters = static_cast<int>(clusters.size());
+    workspace_.number.assign(clusters.size(), 0);
+    if (clusters.size() > 1) {
+      for (std::size_t k = 0; k < clusters.size(); ++k) {
+        clusters[k] = smallestCore(static_cast<int>(k), clusters[k].index);
+      }
+      numberClusters(clusters, workspace_.number);
+    }
+    for (int& of_cell : workspace_.cluster) {
+      of_cell = of_cell == kNoise ? kNoise : workspace_.number[static_cast<std::size_t>(of_cell)];
+    }
+  }
+
+  UnnumberedCluster smallestCore(int cluster, std::uint32_t first_cell) const {
+    UnnumberedCluster smallest{std::numeric_limits<float>::infinity(), 0.0f,
+                               static_cast<std::uint32_t>(cluster)};
+    const std::uint32_t row_end = (grid_.key[first_cell] / stride_ + 1) * stride_;
+    for (std::uint32_t cell = first_cell; cell < cells_ && grid_.key[cell] < row_end; ++cell) {
+      if (workspace_.cluster[cell] != cluster) {
+        continue;
+      }
+      const Interval cores = coresOf(cell);
+      for (std::uint32_t i = cores.begin; i < cores.end; ++i) {
+        const UnnumberedCluster candidate{grid_.x[i], grid_.y[i], smallest.index};
+        smallest = candidate < smallest ? candidate : smallest;
       }
     }
-    for (std::size_t i = grid_.begin[cells_]; i < grid_.point.size(); ++i) {
-      result.label[grid_.point[i]] = kNoise;
-      result.is_core[grid_.point[i]] = 0;
+    return smallest;
+  }
+
+  /// As if all the points of a core cell were core points; then those that are not.
+  void writeLabels(Clustering& result) {
+    for (std::size_t i = 0; i < result.label.size(); ++i) {
+      const int label = workspace_.cluster[grid_.cell[i]];
+      result.label[i] = label;
+      result.is_core[i] = label == kNoise ? 0 : 1;
+    }
+    for (std::uint32_t cell = 0; cell < cells_; ++cell) {
+      if (workspace_.core_end[cell] < grid_.begin[cell + 1]) {
+        settle(cell, result);
+      }
     }
   }
 
   /// Points of a cell that are no core points: with their nearest core point, or noise.
-  void settle(std::uint32_t cell, Clustering& result) {
+  void settle(std::uint32_t cell, Clustering& result) const {
     std::array<Interval, 5> near;
     for (int row = -2; row <= 2; ++row) {
-      near[static_cast<std::size_t>(row + 2)] = window(cell, row, -2, 2);
+      near[static_cast<std::size_t>(row + 2)] = grid_.cellsFrom(rowAround(cell, row));
     }
-    const std::uint32_t only = onlyClusterIn(near);
-    for (std::uint32_t i = core_end_[cell]; i < grid_.begin[cell + 1]; ++i) {
+    const int only = onlyClusterIn(near);
+    if (only == kNoise) {
+      return;
+    }
+    for (std::uint32_t i = workspace_.core_end[cell]; i < grid_.begin[cell + 1]; ++i) {
       int label = kNoise;
       if (only == kSeveral) {
         label = labelOfNearest(i, near);
-      } else if (only != kNone && reachesCore(i, near)) {
-        label = workspace_.number[only];
+      } else if (reachesCore(i, near)) {
+        label = only;
       }
       result.label[grid_.point[i]] = label;
       result.is_core[grid_.point[i]] = 0;
     }
   }
 
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  static constexpr std::uint32_t kSeveral = kNone - 1;
+  static constexpr int kSeveral = -2;
 
-  /// The cluster (by root) of all the core points in these cells, kNone, or kSeveral.
-  std::uint32_t onlyClusterIn(const std::array<Interval, 5>& near) {
-    std::uint32_t only = kNone;
+  /// The cluster of all the core points in these cells, kNoise without any, or kSeveral.
+  int onlyClusterIn(const std::array<Interval, 5>& near) const {
+    int only = kNoise;
     for (const Interval cells : near) {
       for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
-        if (coresOf(other).size() > 0) {
-          const std::uint32_t root = sets_.find(other);
-          only = only == kNone || only == root ? root : kSeveral;
+        const int cluster = workspace_.cluster[other];
+        if (cluster != kNoise) {
+          only = only == kNoise || only == cluster ? cluster : kSeveral;
         }
       }
     }
@@ -248,7 +285,7 @@ class GridClusters {
   bool reachesCore(std::uint32_t i, const std::array<Interval, 5>& near) const {
     for (const Interval cells : near) {
       for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
-        if (connected({i, i + 1}, coresOf(other))) {
+        if (anyWithin(grid_.x[i], grid_.y[i], coresOf(other))) {
           return true;
         }
       }
@@ -256,7 +293,7 @@ class GridClusters {
     return false;
   }
 
-  int labelOfNearest(std::uint32_t i, const std::array<Interval, 5>& near) {
+  int labelOfNearest(std::uint32_t i, const std::array<Interval, 5>& near) const {
     NearestCore nearest(disc_.squaredRadius());
     for (const Interval cells : near) {
       for (std::uint32_t other = cells.begin; other < cells.end; ++other) {
@@ -267,15 +304,14 @@ class GridClusters {
         }
       }
     }
-    return nearest.found ? workspace_.number[sets_.find(nearest.index)] : kNoise;
+    return nearest.found ? workspace_.cluster[nearest.index] : kNoise;
   }
 
   Disc disc_;
+  GridLayout layout_;
   std::uint32_t stride_;
   std::uint32_t cells_ = 0;
   Grid& grid_;
-  std::vector<std::uint32_t>& core_end_;
-  UnionFind& sets_;
   GridWorkspace& workspace_;
 };
 

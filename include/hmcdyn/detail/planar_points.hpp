@@ -75,7 +75,8 @@ class Disc {
                                           float py) const noexcept {
     std::uint32_t bits = 0;
     for (std::size_t i = 0; i < kBlock; ++i) {
-      bits |= contains(x[i] - px, y[i] - py) ? kBits.bit[i] : 0;
+      // A mask, not a choice: GCC would load the bit under a branch, and not vectorise.
+      bits |= (0U - (contains(x[i] - px, y[i] - py) ? 1U : 0U)) & kBits.bit[i];
     }
     return bits;
   }
