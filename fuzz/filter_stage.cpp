@@ -32,18 +32,6 @@ hmcdyn::FilterStageOptions anyOptions(FuzzedDataProvider& data) {
   return options;
 }
 
-std::vector<hmcdyn::DetectionBox> anyBoxes(FuzzedDataProvider& data) {
-  std::vector<hmcdyn::DetectionBox> boxes(data.ConsumeIntegralInRange<std::size_t>(0, 6));
-  for (hmcdyn::DetectionBox& box : boxes) {
-    box.x_min = anyFloat(data, 0.0f, 60.0f);
-    box.y_min = anyFloat(data, 0.0f, 60.0f);
-    box.x_max = box.x_min + anyFloat(data, -5.0f, 80.0f);
-    box.y_max = box.y_min + anyFloat(data, -5.0f, 80.0f);
-    box.class_id = data.ConsumeIntegralInRange<int>(0, 2);
-  }
-  return boxes;
-}
-
 hmcdyn::BoxMembership anyMembership(FuzzedDataProvider& data, std::size_t points) {
   hmcdyn::BoxMembership membership;
   const auto listed = data.ConsumeIntegralInRange<std::size_t>(0, 2 * points);
@@ -82,10 +70,16 @@ void checkResult(const hmcdyn::FilterStageResult& result, std::size_t n, std::si
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   FuzzedDataProvider data(bytes, size);
   const hmcdyn::FilterStageOptions options = anyOptions(data);
-  const std::vector<hmcdyn::DetectionBox> boxes = anyBoxes(data);
+  const std::vector<hmcdyn::DetectionBox> boxes = hmcdyn::fuzz::anyBoxes(data, 6);
   const bool by_membership = data.ConsumeBool();
-  const hmcdyn::KeyPoints points = hmcdyn::fuzz::anyPoints(data, 150);
-  const std::vector<float> distance = hmcdyn::fuzz::anyFloats(data, points.size(), 0.0f, 4.0f);
+  hmcdyn::KeyPoints points = hmcdyn::fuzz::anyPoints(data, 150);
+  std::vector<float> distance = hmcdyn::fuzz::anyFloats(data, points.size(), 0.0f, 4.0f);
+  hmcdyn::fuzz::addCrowd(data, 320, points);  // their distances repeat with a short period
+  const std::vector<float> of_crowd =
+      hmcdyn::fuzz::anyFloats(data, data.ConsumeIntegralInRange<std::size_t>(1, 8), 0.0f, 4.0f);
+  for (std::size_t k = 0; distance.size() < points.size(); ++k) {
+    distance.push_back(of_crowd[k % of_crowd.size()]);
+  }
   const hmcdyn::BoxMembership membership =
       by_membership ? anyMembership(data, points.size()) : hmcdyn::BoxMembership{};
   static hmcdyn::FilterStageWorkspace used;  // what earlier inputs left in it must not matter

@@ -14,6 +14,8 @@
 
 #include <fuzzer/FuzzedDataProvider.h>
 
+#include <hmcdyn/motion_belief.hpp>
+#include <hmcdyn/regions.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn::fuzz {
@@ -49,6 +51,27 @@ inline KeyPoints anyPoints(FuzzedDataProvider& data, int most) {
   return points;
 }
 
+/// Appends up to `most` points around one pixel and one depth, as a person gives them: many points
+/// from few bytes, for what only many points reach.
+inline void addCrowd(FuzzedDataProvider& data, int most, KeyPoints& points) {
+  const int n = data.ConsumeBool() ? data.ConsumeIntegralInRange<int>(0, most) : 0;
+  const float u = anyFloat(data, 0.0f, 100.0f);
+  const float v = anyFloat(data, 0.0f, 100.0f);
+  const float depth = anyFloat(data, 0.5f, 6.0f);
+  const float spread = anyFloat(data, 0.0f, 60.0f);
+  const float depth_spread = anyFloat(data, 0.0f, 2.0f);
+  std::uint32_t state = data.ConsumeIntegral<std::uint16_t>();
+  const auto draw = [&state] {  // -1..1, by a linear congruential generator (Numerical Recipes)
+    state = 1664525U * state + 1013904223U;
+    return static_cast<float>(state >> 16U) / 32767.5f - 1.0f;
+  };
+  for (int i = 0; i < n; ++i) {
+    const float column = u + spread * draw();
+    const float row = v + spread * draw();
+    points.push_back(column, row, depth + depth_spread * draw());
+  }
+}
+
 inline std::vector<float> anyFloats(FuzzedDataProvider& data, std::size_t n, float low,
                                     float high) {
   std::vector<float> values;
@@ -56,6 +79,59 @@ inline std::vector<float> anyFloats(FuzzedDataProvider& data, std::size_t n, flo
     values.push_back(anyFloat(data, low, high));
   }
   return values;
+}
+
+inline std::vector<DetectionBox> anyBoxes(FuzzedDataProvider& data, std::size_t most) {
+  std::vector<DetectionBox> boxes(data.ConsumeIntegralInRange<std::size_t>(0, most));
+  for (DetectionBox& box : boxes) {
+    box.x_min = anyFloat(data, 0.0f, 60.0f);
+    box.y_min = anyFloat(data, 0.0f, 60.0f);
+    box.x_max = box.x_min + anyFloat(data, -5.0f, 80.0f);
+    box.y_max = box.y_min + anyFloat(data, -5.0f, 80.0f);
+    box.class_id = data.ConsumeIntegralInRange<int>(0, 2);
+  }
+  return boxes;
+}
+
+/// Labels in 0..3, now and then any.
+template <class Label>
+std::vector<Label> anyLabels(FuzzedDataProvider& data, std::size_t n) {
+  std::vector<Label> labels;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto byte = data.ConsumeIntegral<std::uint8_t>();
+    labels.push_back(byte == 255 ? data.ConsumeIntegral<Label>() : static_cast<Label>(byte % 4));
+  }
+  return labels;
+}
+
+inline std::vector<LabelRegion> anyRegions(FuzzedDataProvider& data) {
+  std::vector<LabelRegion> regions(data.ConsumeIntegralInRange<std::size_t>(0, 4));
+  for (LabelRegion& region : regions) {
+    region.label =
+        data.ConsumeBool() ? data.ConsumeIntegralInRange<int>(0, 3) : data.ConsumeIntegral<int>();
+    region.class_id = data.ConsumeIntegralInRange<int>(0, 2);
+  }
+  return regions;
+}
+
+/// What a frame before believed, in the ranges that MotionBelief documents.
+inline MotionBelief anyMemory(FuzzedDataProvider& data) {
+  const auto n = data.ConsumeIntegralInRange<std::size_t>(0, 40);
+  MotionBelief memory;
+  memory.u = anyFloats(data, n, 0.0f, 100.0f);
+  memory.v = anyFloats(data, n, 0.0f, 100.0f);
+  memory.depth = anyFloats(data, n, 0.0f, 6.0f);
+  for (std::size_t i = 0; i < n; ++i) {
+    memory.belief.push_back(data.ConsumeBool() ? data.ConsumeProbability<float>() : kNaN);
+    memory.weight.push_back(data.ConsumeProbability<float>());
+  }
+  return memory;
+}
+
+/// Equal bit for bit; NaN equals NaN.
+inline bool same(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
 }
 
 /// A folder of this process for files that a reader is to open.

@@ -5,13 +5,14 @@ set -euo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--seconds N] [--no-build] [TARGET...]
+Usage: ${0##*/} [--seconds N] [--jobs N] [--no-build] [TARGET...]
 
-Builds the libFuzzer targets with AddressSanitizer and UndefinedBehaviorSanitizer and runs each, one
-after the other, from the seeds in fuzz/corpus and what earlier runs found (build/fuzz/corpus). An input
-that breaks something is written to build/fuzz/found. Fails when there is one.
+Builds the libFuzzer targets with AddressSanitizer and UndefinedBehaviorSanitizer and runs each, from
+the seeds in fuzz/corpus and what earlier runs found (build/fuzz/corpus). An input that breaks something
+is written to build/fuzz/found. Fails when there is one.
 
   --seconds N   how long each runs (default: 60)
+  --jobs N      compile jobs, and targets that run, at a time (default: number of processors, $(nproc))
   --no-build    take the targets as they are
   TARGET        of: ${targets[*]} (default: all)
 USAGE
@@ -20,13 +21,14 @@ USAGE
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mapfile -t targets < <(sed -n 's/^hmcdyn_add_fuzzer(\([a-z_]*\).*/\1/p' fuzz/CMakeLists.txt)
 seconds=60
+jobs=$(nproc)
 build=true
 chosen=()
 while (($# > 0)); do
   case "$1" in
-    --seconds)
-      [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || { echo "${0##*/}: --seconds needs a number above 0" >&2 && exit 2; }
-      seconds=$2
+    --seconds | --jobs)
+      [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || { echo "${0##*/}: $1 needs a number above 0" >&2 && exit 2; }
+      if [[ $1 == --seconds ]]; then seconds=$2; else jobs=$2; fi
       shift
       ;;
     --no-build) build=false ;;
@@ -46,25 +48,30 @@ done
 
 if $build; then
   cmake --preset fuzz >/dev/null
-  cmake --build --preset fuzz
+  cmake --build --preset fuzz --parallel "$jobs"
 fi
 
-failed=0
-for target in "${chosen[@]}"; do
-  corpus=build/fuzz/corpus/$target
-  log=build/fuzz/$target.log
+# Readers open a file a run; one in memory costs less.
+[[ -w /dev/shm ]] && export TMPDIR=${TMPDIR:-/dev/shm}
+export SECONDS_A_TARGET=$seconds
+
+# Runs target $1; its verdict on standard output, in one piece.
+run() {
+  local target=$1 verdict=clean runs coverage
+  local corpus=build/fuzz/corpus/$target log=build/fuzz/$target.log seeds=()
   mkdir -p "$corpus" build/fuzz/found
-  seeds=()
   [[ -d fuzz/corpus/$target ]] && seeds=("fuzz/corpus/$target")
-  verdict=clean
-  build/fuzz/bin/fuzz_"$target" -max_total_time="$seconds" -max_len=4096 -timeout=10 \
+  build/fuzz/bin/fuzz_"$target" -max_total_time="$SECONDS_A_TARGET" -max_len=4096 -timeout=10 \
     -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="build/fuzz/found/$target-" \
     "$corpus" "${seeds[@]}" >"$log" 2>&1 || verdict=FAILED
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
-  echo "fuzz_$target: $verdict, ${runs:-?} executions in $seconds s"
-  if [[ $verdict == FAILED ]]; then
-    failed=$((failed + 1))
-    grep -m 3 -E '^(violated|SUMMARY|==[0-9]+==)' "$log" || tail -n 20 "$log"
-  fi
-done
-((failed == 0))
+  coverage=$(sed -n 's/^#[0-9].* cov: \([0-9]*\) .*/\1/p' "$log" | tail -n 1)
+  echo "fuzz_$target: $verdict, ${runs:-?} executions in $SECONDS_A_TARGET s, ${coverage:-?} edges"
+  [[ $verdict == clean ]] && return
+  grep -m 3 -E '^(violated|SUMMARY|==[0-9]+==)' "$log" || tail -n 20 "$log"
+  return 1
+}
+export -f run
+
+# shellcheck disable=SC2016 # $1 is the inner shell's
+printf '%s\0' "${chosen[@]}" | xargs -0 -n 1 -P "$jobs" bash -c 'run "$1"' run

@@ -185,6 +185,7 @@ TEST(Clustering, NothingGivesNothing) {
   EXPECT_EQ(densityClusters(Eigen::MatrixXf(2, 0), options(1.0f, 2)).clusters, 0);
   EXPECT_TRUE(densityClusters(Eigen::MatrixXf(), options(1.0f, 2)).label.empty());
   EXPECT_TRUE(clusterBox({}, {}, options(1.0f, 2)).label.empty());
+  EXPECT_TRUE(clusterBox({}, {}, options(1.0f, 2, 1.5f)).label.empty());  // another backend
 }
 
 TEST(Clustering, PointsThatAreNotFiniteAreNoiseAndNobodysNeighbour) {

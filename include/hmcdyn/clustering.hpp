@@ -177,8 +177,9 @@ inline const Clustering& clusterBox(Span<const float> depth, Span<const float> d
     return detail::clusterPlanar(options, workspace);
   }
   Eigen::MatrixXf columns(2, static_cast<Eigen::Index>(depth.size()));
-  columns.row(0) = Eigen::Map<const Eigen::RowVectorXf>(x, columns.cols());
-  columns.row(1) = Eigen::Map<const Eigen::RowVectorXf>(y, columns.cols());
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    columns.col(static_cast<Eigen::Index>(i)) << x[i], y[i];
+  }
   return densityClusters(columns, options, workspace);
 }
 

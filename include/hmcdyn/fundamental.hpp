@@ -59,7 +59,8 @@ struct MotionModelEstimate {
   float median_distance = kNaN;  ///< Median distance of these matches (px): the noise of the model.
   float conditioning = 0.0f;     ///< Ratio that min_conditioning refers to; 0 = not computed.
 
-  /// True where `model` is a fundamental matrix.
+  /// True where `model` is a fundamental matrix that the matches determine. One that they do not
+  /// stays the model where no homography explains them either.
   bool fundamentalDefined() const noexcept { return verdict == FundamentalVerdict::kDefined; }
 };
 
