@@ -299,7 +299,8 @@ void declareOptions(CLI::App& app, SlamOptions& options) {
       "  hmcdyn_slam --dataset rgbd_dataset_freiburg3_walking_xyz --camera tum3 \\\n"
       "    --detector darknet --model yolo-fastest-1.1.cfg --weights yolo-fastest-1.1.weights \\\n"
       "    --filter hmc --output out\n"
-      "Exit codes: 0 done, 1 bad data, nothing tracked or a full disk, 2 bad usage.");
+      "Exit codes: 0 done, 1 bad data, nothing tracked, a full disk or an error in a part of the\n"
+      "system (results are written all the same), 2 bad usage.");
   declareInput(app, options);
   declareDetection(app, options);
   declareFilter(app, options);

@@ -33,20 +33,23 @@ DenseMapper::DenseMapper()
           kQueue) {}
 
 void DenseMapper::add(std::size_t key_frame, const FrameOutcome& outcome) {
-  while (worker_.tryTake()) {
-  }
   std::vector<std::uint8_t> is_dynamic;
   for (const BoxDecision& box : outcome.filtered.stage.boxes) {
     is_dynamic.push_back(box.verdict.is_dynamic ? 1 : 0);
   }
   worker_.submit({key_frame, outcome.image.bgr, outcome.image.depth,
                   boxesToLeaveOut(outcome.boxes, is_dynamic), dynamicPoints(outcome)});
+  while (worker_.tryTake()) {
+  }
 }
 
-FusionResult DenseMapper::fuse(const Map& map) {
+void DenseMapper::finish() {
   while (worker_.pending() > 0) {
     worker_.take();
   }
+}
+
+FusionResult DenseMapper::fuse(const Map& map) {
   std::vector<KeyFramePose> poses;
   for (std::size_t k = 0; k < map.keyFrames().size(); ++k) {
     poses.push_back({k, map.poseOf(static_cast<int>(k))});

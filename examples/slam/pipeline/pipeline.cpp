@@ -8,6 +8,13 @@
 #include "slam/pipeline/feature_budget.hpp"
 
 namespace hmcdyn::slam {
+namespace {
+
+constexpr const char* kLocalMapping = "local mapping";
+constexpr const char* kLoopClosing = "loop closing";
+constexpr const char* kGoesOn = "the run goes on without its result";
+
+}  // namespace
 
 cv::Mat cornerMask(const Rectifier& rectifier) {
   if (rectifier.isIdentity()) {
@@ -21,8 +28,9 @@ cv::Mat cornerMask(const Rectifier& rectifier) {
 }
 
 Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibration,
-                   cv::Mat corner_mask)
-    : corner_mask_(std::move(corner_mask)),
+                   cv::Mat corner_mask, PartErrors& errors)
+    : errors_(errors),
+      corner_mask_(std::move(corner_mask)),
       extractor_(options.features),
       max_feature_factor_(options.max_feature_factor),
       filter_(options.filter),
@@ -38,20 +46,34 @@ Frame Pipeline::extract(const RgbdFrame& image, const std::vector<DetectionBox>&
                    extractor_.options().scale_factor);
 }
 
+std::optional<Eigen::Isometry3d> Pipeline::relocalize(const Frame& lost) {
+  std::optional<Eigen::Isometry3d> found;
+  errors_.attempt("relocalization", "the frame counts as not found",
+                  [&] { found = loops_.relocalize(lost, tracker_.map()); });
+  return found;
+}
+
+/// @param take gives a correction, or nothing. @return whether the map was moved.
+template <class Take>
+bool Pipeline::takeUp(const std::string& part, const Take& take) {
+  std::optional<MapCorrection> correction;
+  errors_.attempt(part, kGoesOn, [&] { correction = take(); });
+  if (correction) {
+    tracker_.apply(*correction);
+  }
+  return correction.has_value();
+}
+
 bool Pipeline::exchangeWithThreads(bool new_key_frame) {
-  bool moved = false;
-  if (const std::optional<MapCorrection> correction = mapper_.poll()) {
-    tracker_.apply(*correction);
-    moved = true;
+  bool moved = takeUp(kLocalMapping, [this] { return mapper_.poll(); });
+  const bool corrected = takeUp(kLoopClosing, [this] { return loops_.poll(tracker_.map()); });
+  if (corrected) {  // the adjustment began in the map as it was before: void
+    errors_.attempt(kLocalMapping, kGoesOn, [this] { mapper_.finish(); });
   }
-  if (const std::optional<MapCorrection> correction = loops_.poll(tracker_.map())) {
-    mapper_.finish();  // it began in the map as it was before: void
-    tracker_.apply(*correction);
-    moved = true;
-  }
+  moved = moved || corrected;
   if (new_key_frame) {
-    mapper_.adjust(tracker_.map());
-    loops_.process(tracker_.map());
+    errors_.attempt(kLocalMapping, kGoesOn, [this] { mapper_.adjust(tracker_.map()); });
+    errors_.attempt(kLoopClosing, kGoesOn, [this] { loops_.process(tracker_.map()); });
   }
   return moved;
 }
@@ -72,9 +94,7 @@ FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox>
     outcome.size.push_back(point.size);
   }
   outcome.tracking = times.measure("track", [&] {
-    return tracker_.track(std::move(frame), [this](const Frame& lost) {
-      return loops_.relocalize(lost, tracker_.map());
-    });
+    return tracker_.track(std::move(frame), [this](const Frame& lost) { return relocalize(lost); });
   });
   if (outcome.tracking.failure == TrackingFailure::kNone) {
     log_.add(image.timestamp, outcome.tracking.camera_from_world, outcome.tracking.reference,
@@ -86,11 +106,16 @@ FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox>
 }
 
 void Pipeline::finish() {
-  if (const std::optional<MapCorrection> correction = mapper_.finish()) {
-    tracker_.apply(*correction);
-  }
-  while (const std::optional<MapCorrection> correction = loops_.finish(tracker_.map())) {
-    tracker_.apply(*correction);
+  takeUp(kLocalMapping, [this] { return mapper_.finish(); });
+  bool more = true;
+  while (more) {  // after an error as well: what threw is over and done with
+    bool failed = true;
+    const bool moved = takeUp(kLoopClosing, [&] {
+      std::optional<MapCorrection> correction = loops_.finish(tracker_.map());
+      failed = false;
+      return correction;
+    });
+    more = moved || failed;
   }
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <hmcdyn/dynamic_feature_filter.hpp>
@@ -15,6 +17,7 @@
 #include "slam/mapping/loop_closing.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
+#include "slam/pipeline/part_errors.hpp"
 #include "slam/pipeline/trajectory_log.hpp"
 #include "slam/tracking/tracker.hpp"
 
@@ -34,11 +37,14 @@ struct FrameOutcome {
 };
 
 /// The tracking thread's work on a frame, in the order of its data: features, filter, tracking; and
-/// its dealings with the mapping and the loop thread.
+/// its dealings with the mapping and the loop thread. What those threads throw is noted, and
+/// tracking goes on without their result.
 class Pipeline {
  public:
   /// @param corner_mask where corners are the world's; empty = everywhere.
-  Pipeline(const SlamOptions& options, const CameraCalibration& calibration, cv::Mat corner_mask);
+  /// @param errors of the threads; must outlive the pipeline.
+  Pipeline(const SlamOptions& options, const CameraCalibration& calibration, cv::Mat corner_mask,
+           PartErrors& errors);
 
   /// @param image undistorted. @param boxes of the detector, in that image.
   FrameOutcome process(const RgbdFrame& image, std::vector<DetectionBox> boxes);
@@ -56,8 +62,12 @@ class Pipeline {
 
  private:
   Frame extract(const RgbdFrame& image, const std::vector<DetectionBox>& boxes);
+  std::optional<Eigen::Isometry3d> relocalize(const Frame& lost);
+  template <class Take>
+  bool takeUp(const std::string& part, const Take& take);
   bool exchangeWithThreads(bool new_key_frame);
 
+  PartErrors& errors_;
   cv::Mat corner_mask_;
   OrbExtractor extractor_;
   double max_feature_factor_;
