@@ -38,6 +38,7 @@ class DenseMapper {
     cv::Mat bgr;
     cv::Mat depth;
     std::vector<DetectionBox> boxes;
+    cv::Mat labels;  ///< In place of the boxes, or empty.
     std::vector<cv::Point2f> dynamic_points;
   };
 

@@ -38,9 +38,9 @@ Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibrat
       mapper_(options.mapping),
       loops_(calibration.pinhole, options.loops) {}
 
-Frame Pipeline::extract(const RgbdFrame& image, const std::vector<DetectionBox>& boxes) {
-  const int wanted = featureBudget(extractor_.options().features,
-                                   coveredShare(boxes, image.gray.size()), max_feature_factor_);
+Frame Pipeline::extract(const RgbdFrame& image, double covered_share) {
+  const int wanted =
+      featureBudget(extractor_.options().features, covered_share, max_feature_factor_);
   return makeFrame(image.index, image.timestamp,
                    extractor_.extract(image.gray, corner_mask_, wanted), image.depth,
                    extractor_.options().scale_factor);
@@ -78,15 +78,20 @@ bool Pipeline::exchangeWithThreads(bool new_key_frame) {
   return moved;
 }
 
-FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox> boxes) {
+FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox> boxes,
+                               FrameMask mask) {
   FrameOutcome outcome;
   StageTimes& times = outcome.times;
   outcome.image = image;
   outcome.boxes = std::move(boxes);
+  outcome.mask = std::move(mask);
 
-  Frame frame = times.measure("features", [&] { return extract(image, outcome.boxes); });
-  outcome.filtered = times.measure(
-      "filter", [&] { return filter_.filter(image.gray, image.depth, outcome.boxes, frame); });
+  const double covered = outcome.mask.empty() ? coveredShare(outcome.boxes, image.gray.size())
+                                              : coveredShare(outcome.mask);
+  Frame frame = times.measure("features", [&] { return extract(image, covered); });
+  outcome.filtered = times.measure("filter", [&] {
+    return filter_.filter(image.gray, image.depth, outcome.boxes, frame, outcome.mask);
+  });
   outcome.points = frame.points;
   outcome.weight = frame.weight;
   outcome.size.reserve(frame.points.size());

@@ -11,6 +11,7 @@
 #include "slam/camera/calibration.hpp"
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
+#include "slam/detection/frame_mask.hpp"
 #include "slam/features/orb_extractor.hpp"
 #include "slam/filtering/motion_filter.hpp"
 #include "slam/mapping/local_mapper.hpp"
@@ -27,6 +28,7 @@ namespace hmcdyn::slam {
 struct FrameOutcome {
   RgbdFrame image;                      ///< As processed: undistorted.
   std::vector<DetectionBox> boxes;      ///< In the undistorted image.
+  FrameMask mask;                       ///< What the boxes are around, where there is a mask.
   KeyPoints points;                     ///< N key points.
   std::vector<float> size;              ///< N diameters of the described patches (px).
   std::vector<float> weight;            ///< N weights as the tracker used them.
@@ -46,8 +48,10 @@ class Pipeline {
   Pipeline(const SlamOptions& options, const CameraCalibration& calibration, cv::Mat corner_mask,
            PartErrors& errors);
 
-  /// @param image undistorted. @param boxes of the detector, in that image.
-  FrameOutcome process(const RgbdFrame& image, std::vector<DetectionBox> boxes);
+  /// @param image undistorted. @param boxes of the detector, in that image. @param mask in place of
+  /// the boxes, which are those around its regions then.
+  FrameOutcome process(const RgbdFrame& image, std::vector<DetectionBox> boxes,
+                       FrameMask mask = {});
 
   /// Waits for the threads and takes up what they have.
   void finish();
@@ -61,7 +65,7 @@ class Pipeline {
   const LocalMapper& mapper() const noexcept { return mapper_; }
 
  private:
-  Frame extract(const RgbdFrame& image, const std::vector<DetectionBox>& boxes);
+  Frame extract(const RgbdFrame& image, double covered_share);
   std::optional<Eigen::Isometry3d> relocalize(const Frame& lost);
   template <class Take>
   bool takeUp(const std::string& part, const Take& take);

@@ -102,7 +102,8 @@ FrameOutcome trackFrame(const PreparedFrame& frame, FrameBoxes boxes, Pipeline& 
   before.add(frame.rectify_time);
   before.add({"detect", boxes.detect_wall_ms, boxes.detect_cpu_ms});
   before.add(boxes.carry_time);
-  FrameOutcome outcome = pipeline.process(frame.image, std::move(boxes.boxes));
+  FrameOutcome outcome =
+      pipeline.process(frame.image, std::move(boxes.boxes), std::move(boxes.mask));
   outcome.times.prepend(before);
   return outcome;
 }
