@@ -43,6 +43,12 @@ RunSummary parse(const nlohmann::json& summary) {
     throw std::invalid_argument("the run could not write its results: " +
                                 counts.at("write_failures").front().get<std::string>());
   }
+  if (summary.contains("errors") && !summary.at("errors").empty()) {
+    const nlohmann::json& error = summary.at("errors").front();
+    throw std::invalid_argument(fmt::format("{} failed in the run: {}",
+                                            error.at("part").get<std::string>(),
+                                            error.at("error").get<std::string>()));
+  }
   RunSummary run;
   run.frames = counts.at("frames_in").get<std::size_t>();
   run.tracked = counts.at("frames_tracked").get<std::size_t>();

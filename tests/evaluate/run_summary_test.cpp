@@ -84,6 +84,11 @@ TEST_F(RunSummaries, WhatIsNotFinishedIsRefused) {
   EXPECT_THAT(errorOf(replaced(kComplete, "\"stopped_by_signal\": false",
                                "\"stopped_by_signal\": false, \"write_failures\": [\"full\"]")),
               HasSubstr("could not write its results: full"));
+  EXPECT_THAT(
+      errorOf(replaced(kComplete, "\"counts\"",
+                       "\"errors\": [{\"part\": \"loop closing\", \"error\": \"too late\"}], "
+                       "\"counts\"")),
+      HasSubstr("loop closing failed in the run: too late"));
   EXPECT_THAT(errorOf(replaced(kComplete, "\"frames_in\": 49", "\"frames_in\": 0")),
               HasSubstr("48 of 0 frames tracked"));
   EXPECT_THAT(errorOf(replaced(kComplete, "\"frames_in\": 49", "\"frames_in\": 40")),

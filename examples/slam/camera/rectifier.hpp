@@ -19,12 +19,15 @@ class Rectifier {
   /// True where there is no distortion to take out.
   bool isIdentity() const noexcept { return map_whole_.empty(); }
 
+  /// Of the camera's images (px).
+  cv::Size size() const noexcept { return {calibration_.width, calibration_.height}; }
+
   /// Rectified colour or grey image, linear interpolation; black where the camera did not look.
   /// @throws std::invalid_argument where the image is not of the calibration's size.
   cv::Mat color(const cv::Mat& image) const;
 
   /// Rectified depth image, nearest neighbour, so that no depth is made up between near and far;
-  /// 0 where the camera did not look.
+  /// 0 where the camera did not look. Also for label images, of any type of one channel.
   /// @throws std::invalid_argument where the image is not of the calibration's size.
   cv::Mat depth(const cv::Mat& image) const;
 

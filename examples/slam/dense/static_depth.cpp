@@ -97,6 +97,23 @@ cv::Mat staticMask(cv::Size size, Span<const DetectionBox> boxes,
   return mask;
 }
 
+cv::Mat withoutLabels(const cv::Mat& mask, const cv::Mat& labels,
+                      const StaticDepthOptions& options) {
+  checkOptions(options);
+  if (mask.type() != CV_8UC1 || labels.channels() != 1 || labels.size() != mask.size()) {
+    throw std::invalid_argument(fmt::format(
+        "dense map: labels of {}x{} for a mask of {}x{}; expected one channel and equal sizes",
+        labels.cols, labels.rows, mask.cols, mask.rows));
+  }
+  const int margin = static_cast<int>(std::lround(options.box_margin));
+  cv::Mat covered;
+  cv::dilate(labels != 0, covered,
+             cv::getStructuringElement(cv::MORPH_RECT, {2 * margin + 1, 2 * margin + 1}));
+  cv::Mat rest = mask.clone();
+  rest.setTo(0, covered);
+  return rest;
+}
+
 std::vector<DetectionBox> boxesToLeaveOut(Span<const DetectionBox> boxes,
                                           Span<const std::uint8_t> box_is_dynamic) {
   if (box_is_dynamic.size() != boxes.size()) {

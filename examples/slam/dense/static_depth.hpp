@@ -36,6 +36,12 @@ struct ThinnedKeyFrame {
 cv::Mat staticMask(cv::Size size, Span<const DetectionBox> boxes,
                    Span<const cv::Point2f> dynamic_points, const StaticDepthOptions& options = {});
 
+/// The mask without the pixels that have a label, and box_margin (px) around them.
+/// @param mask CV_8UC1. @param labels any type of one channel, 0 = background, of the mask's size.
+/// @throws std::invalid_argument on other types, different sizes, or an option out of range.
+cv::Mat withoutLabels(const cv::Mat& mask, const cv::Mat& labels,
+                      const StaticDepthOptions& options = {});
+
 /// Boxes for staticMask(): persons, moving or not, and whatever else the filter found to move.
 /// @param box_is_dynamic one a box. @throws std::invalid_argument where the sizes differ.
 std::vector<DetectionBox> boxesToLeaveOut(Span<const DetectionBox> boxes,

@@ -16,7 +16,8 @@
 namespace hmcdyn::slam {
 namespace {
 
-/// Looks at no image: there is no detector, or regions come from depth and flow (MotionRegions).
+/// Looks at no image: there is no detector, or regions come from depth and flow (MotionRegions) or
+/// from masks (MaskFolder).
 class NoDetector final : public ObjectDetector {
  public:
   explicit NoDetector(const char* name) : name_(name) {}
@@ -35,7 +36,7 @@ struct DetectorType {
   std::unique_ptr<ObjectDetector> (*make)(const DetectorOptions&);
 };
 
-constexpr std::array<DetectorType, 6> kTypes{{
+constexpr std::array<DetectorType, 7> kTypes{{
     {"darknet", makeDarknetDetector},
     {"yolo", makeOnnxDetector},
     {"file", makeFileDetector},
@@ -43,6 +44,14 @@ constexpr std::array<DetectorType, 6> kTypes{{
     {"motion",
      [](const DetectorOptions&) -> std::unique_ptr<ObjectDetector> {
        return std::make_unique<NoDetector>("motion");
+     }},
+    {"masks",
+     [](const DetectorOptions& options) -> std::unique_ptr<ObjectDetector> {
+       if (options.masks.empty()) {
+         throw std::invalid_argument(
+             "detector 'masks': --masks is not given; it needs --masks FOLDER");
+       }
+       return std::make_unique<NoDetector>("masks");
      }},
     {"none",
      [](const DetectorOptions&) -> std::unique_ptr<ObjectDetector> {
@@ -70,6 +79,14 @@ void checkOptions(const DetectorOptions& options) {
   if (!(options.time_tolerance >= 0.0)) {
     throw std::invalid_argument(fmt::format(
         "DetectorOptions::time_tolerance is {} s; expected 0 or more", options.time_tolerance));
+  }
+  if (options.mask_margin < 0) {
+    throw std::invalid_argument(fmt::format(
+        "DetectorOptions::mask_margin is {} px; expected 0 or more", options.mask_margin));
+  }
+  if (!options.masks.empty() && options.type != "masks") {
+    throw std::invalid_argument(fmt::format(
+        "--masks is given, but the detector is '{}'; expected --detector masks", options.type));
   }
   for (const int class_id : options.classes) {
     if (class_id < 0 || class_id >= kCocoClassCount) {

@@ -11,11 +11,14 @@ namespace hmcdyn::slam {
 struct DetectorOptions {
   /// "darknet" (YOLO as .cfg and .weights), "yolo" (YOLOv5 or YOLOv8 as ONNX), "file" (boxes read
   /// from a text file), "hog" (OpenCV's people detector, needs no model), "motion" (no detector:
-  /// depth segments that move, by MotionRegions) or "none".
+  /// depth segments that move, by MotionRegions), "masks" (label images in place of boxes, by
+  /// MaskFolder) or "none".
   std::string type = "none";
   std::filesystem::path model;    ///< darknet: the .cfg; yolo: the .onnx. Trained on COCO.
   std::filesystem::path weights;  ///< darknet: the .weights that belong to the .cfg.
   std::filesystem::path boxes;    ///< file: lines as readBoxFile() describes them.
+  std::filesystem::path masks;    ///< masks: a folder as MaskFolder describes it.
+  int mask_margin = 4;            ///< Regions are that much larger than their masks (px), >= 0.
   /// Boxes with a lower score are left out, whatever the detector. 0..1.
   float score_threshold = 0.25f;
   /// Of two boxes of one class whose intersection over union is larger, the stronger stays. 0..1.
@@ -25,7 +28,7 @@ struct DetectorOptions {
   /// Side of the network's square input (px), a multiple of 32; 0 = the model's own, which is
   /// that of the .cfg, and 640 for ONNX. An ONNX export runs with its own size only.
   int input_size = 0;
-  /// file: largest difference between the time stamps of an image and of its boxes (s).
+  /// file, masks: largest difference between the time stamps of an image and its boxes (s).
   double time_tolerance = 0.02;
 };
 

@@ -4,10 +4,22 @@
 #include <algorithm>
 #include <utility>
 
+#include <hmcdyn/label_image.hpp>
 #include <hmcdyn/weights.hpp>
 
 namespace hmcdyn::slam {
 namespace {
+
+std::vector<std::uint8_t> flagPeople(const KeyPoints& points, const FrameMask& mask) {
+  std::vector<std::uint8_t> in_person;
+  in_person.reserve(points.size());
+  for (const int region : regionsOfPoints(points.view(), mask.labels, mask.regions)) {
+    const bool inside = region != kNoRegion &&
+                        mask.regions[static_cast<std::size_t>(region)].class_id == kPersonClassId;
+    in_person.push_back(inside ? 1 : 0);
+  }
+  return in_person;
+}
 
 std::vector<std::uint8_t> flagPeople(const KeyPoints& points, Span<const DetectionBox> boxes) {
   std::vector<std::uint8_t> in_person(points.size(), 0);
@@ -50,7 +62,8 @@ void MotionFilter::forgetBefore(double timestamp) {
 }
 
 DynamicFeatureFilterResult MotionFilter::filter(const cv::Mat& gray, const cv::Mat& depth,
-                                                Span<const DetectionBox> boxes, Frame& frame) {
+                                                Span<const DetectionBox> boxes, Frame& frame,
+                                                const FrameMask& mask) {
   Remembered current{frame.timestamp, buildFlowPyramid(gray, options_.filter.flow)};
   const std::vector<EarlierFrame> earlier = options_.filter.stage.rule == FilterRule::kNone
                                                 ? std::vector<EarlierFrame>{}
@@ -58,7 +71,12 @@ DynamicFeatureFilterResult MotionFilter::filter(const cv::Mat& gray, const cv::M
   DynamicFeatureFilterInput input;
   input.pyramid = &current.pyramid;
   input.points = frame.points.view();
-  input.boxes = boxes;
+  if (mask.empty()) {
+    input.boxes = boxes;
+  } else {
+    input.labels = mask.labels;
+    input.regions = mask.regions;
+  }
   input.earlier = earlier;
   input.depth = {depth.ptr<float>(), depth.cols, depth.rows, depth.step1()};
   // A memory is of the frame before: it needs the flow to that one, which the baselines may leave
@@ -72,7 +90,8 @@ DynamicFeatureFilterResult MotionFilter::filter(const cv::Mat& gray, const cv::M
   const FrameDecision& decision = result.stage.frame;
   frame.label = result.stage.label;
   if (options_.filter.stage.rule != FilterRule::kNone) {
-    frame.in_person = flagPeople(frame.points, boxes);
+    frame.in_person =
+        mask.empty() ? flagPeople(frame.points, boxes) : flagPeople(frame.points, mask);
   }
   frame.soft_weights =
       options_.soft_weights &&

@@ -9,6 +9,7 @@
 
 #include <hmcdyn/dynamic_feature_filter.hpp>
 
+#include "slam/detection/frame_mask.hpp"
 #include "slam/tracking/frame.hpp"
 
 namespace hmcdyn::slam {
@@ -30,8 +31,10 @@ class MotionFilter {
 
   /// Filters the frame's key points and remembers its image.
   /// @param gray CV_8UC1, undistorted. @param depth CV_32FC1 (m), of the same size.
+  /// @param mask takes the place of the boxes where it is not empty.
   DynamicFeatureFilterResult filter(const cv::Mat& gray, const cv::Mat& depth,
-                                    Span<const DetectionBox> boxes, Frame& frame);
+                                    Span<const DetectionBox> boxes, Frame& frame,
+                                    const FrameMask& mask = {});
 
  private:
   struct Remembered {

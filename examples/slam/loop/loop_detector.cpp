@@ -35,6 +35,9 @@ LoopDetector::LoopDetector(const PinholeCamera& camera, const LoopDetectorOption
     throw std::invalid_argument("options.min_consistent is " +
                                 std::to_string(options.min_consistent) + ", expected at least 1");
   }
+  if (options.place_size < 1) {
+    throw std::invalid_argument("options.place_size is 0, expected at least 1");
+  }
 }
 
 std::vector<LoopCandidate> LoopDetector::candidatesOf(const LoopKeyFrame& key_frame) const {
@@ -53,25 +56,68 @@ std::vector<LoopCandidate> LoopDetector::candidatesOf(const LoopKeyFrame& key_fr
         neighbours.empty() ? isRecent(place.id) : neighbours.count(place.id) != 0;
     reference = sees_the_same ? std::max(reference, place.score) : reference;
   }
-  std::vector<LoopCandidate> candidates;
+  std::vector<LoopCandidate> good;
+  std::vector<LoopCandidate> low;
   for (const PlaceCandidate& place : alike) {
     if (isRecent(place.id) || neighbours.count(place.id) != 0) {
       continue;
-    }
-    if (candidates.size() == options_.max_candidates) {
-      break;
     }
     LoopCandidate candidate;
     candidate.id = place.id;
     candidate.score = place.score;
     candidate.reference_score = reference;
-    candidate.verification.verdict =
-        place.score < std::max(options_.min_score, options_.min_relative_score * reference)
-            ? LoopVerdict::kLowScore
-            : LoopVerdict::kInconsistent;
-    candidates.push_back(candidate);
+    const bool is_good =
+        place.score >= std::max(options_.min_score, options_.min_relative_score * reference);
+    candidate.verification.verdict = is_good ? LoopVerdict::kInconsistent : LoopVerdict::kLowScore;
+    (is_good ? good : low).push_back(candidate);
   }
+  std::vector<LoopCandidate> candidates = placesAmong(good);
+  candidates.insert(candidates.end(), low.begin(), low.end());
+  candidates.resize(std::min(candidates.size(), options_.max_candidates));
   return candidates;
+}
+
+/// @param alike best score first. @return the best of each place, best place first.
+std::vector<LoopCandidate> LoopDetector::placesAmong(
+    const std::vector<LoopCandidate>& alike) const {
+  std::map<std::size_t, std::size_t> rank;
+  for (std::size_t i = 0; i < alike.size(); ++i) {
+    rank[alike[i].id] = i;
+  }
+  std::map<std::size_t, double> score_of;  // of a place, by rank of its best candidate
+  for (const LoopCandidate& candidate : alike) {
+    std::set<std::size_t> members;  // ranks: those that look most alike come first
+    for (const std::size_t id : groupOf(candidate.id).members) {
+      const auto found = rank.find(id);
+      if (found != rank.end()) {
+        members.insert(found->second);
+      }
+    }
+    double sum = 0.0;
+    std::size_t taken = 0;
+    for (auto member = members.begin(); member != members.end() && taken < options_.place_size;
+         ++member, ++taken) {
+      sum += alike[*member].score;
+    }
+    double& best = score_of[*members.begin()];
+    best = std::max(best, sum);
+  }
+  std::vector<LoopCandidate> places;
+  double best = 0.0;
+  for (const auto& [first, score] : score_of) {
+    places.push_back(alike[first]);
+    places.back().place_score = score;
+    best = std::max(best, score);
+  }
+  places.erase(std::remove_if(places.begin(), places.end(),
+                              [&](const LoopCandidate& place) {
+                                return place.place_score < options_.min_relative_place * best;
+                              }),
+               places.end());
+  std::stable_sort(
+      places.begin(), places.end(),
+      [](const LoopCandidate& a, const LoopCandidate& b) { return a.place_score > b.place_score; });
+  return places;
 }
 
 LoopDetector::Group LoopDetector::groupOf(std::size_t id) const {

@@ -23,10 +23,14 @@ struct LoopDetectorOptions {
   PlaceIndexOptions place;
   LoopVerificationOptions verification;
   std::size_t min_gap = 10;         ///< Candidates are at least this many key frames old.
-  std::size_t max_candidates = 5;   ///< Looked at for a key frame, best score first.
+  std::size_t max_candidates = 5;   ///< Looked at for a key frame, best place first.
   double min_score = 0.02;          ///< Of a candidate, 0..1.
   double min_relative_score = 0.3;  ///< Of a candidate, to the best among the key frames that see
                                     ///< the same points.
+  /// Of a place's score, to the best place's; a place is a candidate with the key frames that see
+  /// the same points, at most so many, those that look most alike.
+  double min_relative_place = 0.75;
+  std::size_t place_size = 10;  ///< >= 1
   /// Key frames in succession, this one included, whose candidates must overlap or share points.
   int min_consistent = 3;
   std::size_t cooldown = 5;  ///< Key frames after a loop in which none is looked for.
@@ -50,13 +54,14 @@ struct LoopCandidate {
   std::size_t id = 0;
   double score = 0.0;            ///< Of the place index.
   double reference_score = 0.0;  ///< Of the best key frame that sees the same points.
+  double place_score = 0.0;      ///< The sum over its place.
   int consistent = 0;            ///< Key frames in succession that point there, this one included.
   LoopVerification verification;
 };
 
 struct LoopReport {
   std::size_t id = 0;                     ///< The key frame that was processed.
-  std::vector<LoopCandidate> candidates;  ///< Best score first.
+  std::vector<LoopCandidate> candidates;  ///< Best place first, then those of low score.
   std::optional<LoopConstraint> constraint;
 };
 
@@ -65,7 +70,9 @@ struct LoopReport {
 ///
 /// A candidate is a key frame that looks alike, is old enough, shares no point with the current
 /// one, and keeps up with the score of those that do (as in DBoW2, Galvez-Lopez and Tardos 2012,
-/// without the normalisation). Consecutive key frames must point to the same place, as ORB-SLAM
+/// without the normalisation). Scores of candidates that see the same points are added, since a
+/// true place brings its neighbours, and the best of each place stands for it (as in ORB-SLAM,
+/// Mur-Artal et al. 2015). Consecutive key frames must point to the same place, as ORB-SLAM
 /// (Mur-Artal et al. 2015) asks; then verifyLoop() decides.
 class LoopDetector {
  public:
@@ -89,6 +96,7 @@ class LoopDetector {
   };
 
   std::vector<LoopCandidate> candidatesOf(const LoopKeyFrame& key_frame) const;
+  std::vector<LoopCandidate> placesAmong(const std::vector<LoopCandidate>& alike) const;
   int consistencyOf(const Group& group) const;
   Group groupOf(std::size_t id) const;
   std::optional<LoopConstraint> choose(const LoopKeyFrame& key_frame,

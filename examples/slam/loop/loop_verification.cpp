@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
 
-#include "slam/features/hamming_distance.hpp"
+#include "slam/loop/coverage.hpp"
 #include "slam/loop/pixel_grid.hpp"
 #include "slam/optimization/optimization_input.hpp"
 
@@ -33,50 +32,6 @@ struct GuidedSearch {
   double depth_agreement = 0.0;
 };
 
-using Cell = std::pair<int, int>;
-
-Cell cellOf(double u, double v, double side) {
-  // Far outside any image is one place, too.
-  const auto place = [side](double pixel) {
-    return static_cast<int>(std::floor(std::clamp(pixel, -1e6, 1e6) / side));
-  };
-  return {place(u), place(v)};
-}
-
-/// Where points should be seen again, and whether they are, by squares of the image.
-class Coverage {
- public:
-  explicit Coverage(const LoopVerificationOptions& options) : options_(options) {}
-
-  void expect(const Cell& cell) { ++squares_[cell].expected; }
-  void find(const Cell& cell) { ++squares_[cell].found; }
-
-  double share() const {
-    std::size_t asked = 0;
-    std::size_t answered = 0;
-    for (const auto& [cell, square] : squares_) {
-      if (square.expected >= options_.cell_points) {
-        ++asked;
-        answered += static_cast<double>(square.found) >=
-                            std::max(1.0, options_.min_square_support *
-                                              static_cast<double>(square.expected))
-                        ? 1
-                        : 0;
-      }
-    }
-    return asked == 0 ? 0.0 : static_cast<double>(answered) / static_cast<double>(asked);
-  }
-
- private:
-  struct Square {
-    std::size_t expected = 0;
-    std::size_t found = 0;
-  };
-
-  const LoopVerificationOptions& options_;
-  std::map<Cell, Square> squares_;
-};
-
 /// Nearest key point with a depth around a pixel.
 std::optional<std::size_t> neighbourOf(const LoopKeyFrame& to, const PixelGrid& grid,
                                        const Eigen::Vector2d& pixel, double radius) {
@@ -97,24 +52,6 @@ struct Claim {
   int distance = std::numeric_limits<int>::max();
 };
 
-/// The key point of `to` around a pixel that looks most like one of `from`.
-std::optional<std::pair<std::size_t, int>> alikeAround(const LoopKeyFrame& from, std::size_t i,
-                                                       const LoopKeyFrame& to,
-                                                       const PixelGrid& grid,
-                                                       const Eigen::Vector2d& pixel,
-                                                       const LoopVerificationOptions& options) {
-  std::optional<std::pair<std::size_t, int>> best;
-  const auto* descriptor = from.descriptors.ptr<std::uint8_t>(static_cast<int>(i));
-  grid.around(pixel.x(), pixel.y(), options.radius, [&](std::size_t j) {
-    const int distance =
-        hammingDistance(descriptor, to.descriptors.ptr<std::uint8_t>(static_cast<int>(j)));
-    if (distance <= options.max_distance && (!best || distance < best->second)) {
-      best = std::make_pair(j, distance);
-    }
-  });
-  return best;
-}
-
 double shareOf(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -125,7 +62,7 @@ GuidedSearch searchAround(const LoopKeyFrame& from, const LoopKeyFrame& to,
   const PixelGrid grid(to.points, std::max(options.radius, options.neighbour_radius));
   std::vector<Claim> claims(to.points.size());
   std::vector<Cell> cells(from.points.size());
-  Coverage coverage(options);
+  Coverage coverage(options.cell_points, options.min_square_support);
   std::size_t visible = 0;
   std::size_t compared = 0;
   std::size_t agreeing = 0;
@@ -150,7 +87,7 @@ GuidedSearch searchAround(const LoopKeyFrame& from, const LoopKeyFrame& to,
       ++compared;
       agreeing += std::abs(p.z() - seen) <= tolerance ? 1 : 0;
     }
-    const auto alike = alikeAround(from, i, to, grid, pixel, options);
+    const auto alike = alikeAround(from, i, to, grid, pixel, options.radius, options.max_distance);
     if (alike && alike->second < claims[alike->first].distance) {
       claims[alike->first] = {static_cast<int>(i), alike->second};
     }

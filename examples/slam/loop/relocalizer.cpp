@@ -145,6 +145,12 @@ void tryKeyFrame(const LoopKeyFrame& key_frame, const LoopKeyFrame& frame,
   if (!refined.succeeded() || refined.inliers <= result.most_inliers) {
     return;
   }
+  if (refined.inliers >= options.min_inliers &&
+      coverageIn(frame, key_frame, refined.camera_from_world, camera, options.coverage) <
+          options.min_coverage) {
+    ++result.contradicted;
+    return;
+  }
   result.most_inliers = refined.inliers;
   if (refined.inliers < options.min_inliers) {
     return;

@@ -11,6 +11,7 @@
 
 #include <hmcdyn/types.hpp>
 
+#include "slam/loop/coverage.hpp"
 #include "slam/loop/descriptor_matcher.hpp"
 #include "slam/loop/loop_key_frame.hpp"
 #include "slam/loop/rigid_ransac.hpp"
@@ -28,6 +29,10 @@ struct RelocalizerOptions {
   /// Fewer matches with a depth in both frames than this, and the pose comes from pixels alone
   /// (perspective n-point).
   std::size_t min_depth_pairs = 30;
+  /// In this share of the squares where frame and key frame both have points, those of the key
+  /// frame must be seen again: else it is a picture or a chair that is in two places.
+  double min_coverage = 0.6;
+  CoverageOptions coverage;
   int pnp_iterations = 300;       ///< Samples, >= 1.
   float pnp_reprojection = 4.0f;  ///< Largest error of an inlier in the samples (px).
 };
@@ -49,7 +54,9 @@ struct RelocalizationResult {
   RelocalizationMethod method = RelocalizationMethod::kNone;
   std::size_t tried = 0;         ///< Key frames that were matched.
   std::size_t most_matches = 0;  ///< By descriptor, with any of them.
-  std::size_t most_inliers = 0;  ///< Of any of them.
+  std::size_t most_inliers = 0;  ///< Of any of them, contradicted ones left out.
+  std::size_t contradicted =
+      0;  ///< Key frames that gave a pose which the rest of the frame denies.
 };
 
 /// Where a frame without a pose is: asks the index for key frames that look alike, matches, finds

@@ -44,8 +44,9 @@ std::optional<MapCorrection> LocalMapper::finish() {
   if (!busy()) {
     return std::nullopt;
   }
+  MapCorrection correction = worker_.take();
   ++adjustments_;
-  return worker_.take();
+  return correction;
 }
 
 }  // namespace hmcdyn::slam

@@ -33,10 +33,11 @@ class LocalMapper {
   /// switched off.
   void adjust(const Map& map);
 
-  /// What is to be taken up at this frame; call it once a frame, before tracking.
+  /// What is to be taken up at this frame; call it once a frame, before tracking. Rethrows what the
+  /// adjustment threw; it is over and done with then, and the next one may begin.
   std::optional<MapCorrection> poll();
 
-  /// Waits for what is outstanding.
+  /// Waits for what is outstanding. Rethrows as poll() does.
   std::optional<MapCorrection> finish();
 
   std::size_t adjustments() const noexcept { return adjustments_; }  ///< Results taken up.

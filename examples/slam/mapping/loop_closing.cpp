@@ -34,15 +34,24 @@ LoopClosing::Answer LoopClosing::run(State& state, const LoopClosingOptions& opt
   if (const auto* closure = std::get_if<CloseJob>(&job)) {
     return close(closure->map, options.closer);
   }
-  const RelocalizationResult found =
-      slam::relocalize(std::get<RelocalizeJob>(job).frame, state.detector.index(),
-                       state.detector.keyFrames(), state.camera, options.relocalizer);
+  return find(state, options, std::get<RelocalizeJob>(job).frame);
+}
+
+LoopClosing::Relocalized LoopClosing::find(State& state, const LoopClosingOptions& options,
+                                           const LoopKeyFrame& frame) {
   Relocalized relocalized;
-  if (found.camera_from_world) {
-    relocalized.key_frame = found.key_frame;
-    relocalized.from_key_frame =
-        *found.camera_from_world *
-        state.detector.keyFrames().at(found.key_frame).camera_from_world.inverse();
+  try {
+    const RelocalizationResult found =
+        slam::relocalize(frame, state.detector.index(), state.detector.keyFrames(), state.camera,
+                         options.relocalizer);
+    if (found.camera_from_world) {
+      relocalized.key_frame = found.key_frame;
+      relocalized.from_key_frame =
+          *found.camera_from_world *
+          state.detector.keyFrames().at(found.key_frame).camera_from_world.inverse();
+    }
+  } catch (...) {
+    relocalized.error = std::current_exception();  // an answer all the same: to this question
   }
   return relocalized;
 }
@@ -191,7 +200,14 @@ std::size_t LoopClosing::loopsClosed() const noexcept {
       std::count_if(loops_.begin(), loops_.end(), [](const Loop& loop) { return loop.closed; }));
 }
 
+void LoopClosing::rethrowKept() {
+  if (kept_error_) {
+    std::rethrow_exception(std::exchange(kept_error_, nullptr));
+  }
+}
+
 std::optional<MapCorrection> LoopClosing::poll(const Map& map) {
+  rethrowKept();
   if (due_ && !closing_) {  // the correction before it has been applied by now
     due_ = false;
     submitClosure(map);
@@ -210,6 +226,7 @@ std::optional<MapCorrection> LoopClosing::poll(const Map& map) {
 }
 
 std::optional<MapCorrection> LoopClosing::finish(const Map& map) {
+  rethrowKept();
   std::optional<MapCorrection> latest;
   while (!latest) {
     if (due_ && !closing_) {
@@ -232,7 +249,14 @@ std::optional<Eigen::Isometry3d> LoopClosing::relocalize(const Frame& frame, con
   relocalized_.reset();
   worker_.submit(RelocalizeJob{makeLoopKeyFrame(frame)});
   while (!relocalized_) {
-    takeUp(worker_.take(), map);
+    try {
+      takeUp(worker_.take(), map);
+    } catch (...) {
+      kept_error_ = std::current_exception();  // of a key frame that waited before the question
+    }
+  }
+  if (relocalized_->error) {
+    std::rethrow_exception(relocalized_->error);
   }
   if (closing_ || !relocalized_->from_key_frame) {
     return std::nullopt;

@@ -56,7 +56,8 @@ class LoopClosing {
   /// none. Rethrows as poll() does.
   std::optional<MapCorrection> finish(const Map& map);
 
-  /// Where a lost frame is; waits for the thread. Nothing where no place looks alike.
+  /// Where a lost frame is; waits for the thread. Nothing where no place looks alike. Rethrows what
+  /// this search threw; what the thread's earlier work threw, the next poll() or finish() rethrows.
   std::optional<Eigen::Isometry3d> relocalize(const Frame& frame, const Map& map);
 
   /// Candidates since the last call.
@@ -88,6 +89,7 @@ class LoopClosing {
   struct Relocalized {
     std::size_t key_frame = 0;
     std::optional<Eigen::Isometry3d> from_key_frame;
+    std::exception_ptr error;
   };
   using Job = std::variant<DetectJob, CloseJob, RelocalizeJob>;
   using Answer = std::variant<LoopReport, Closed, Relocalized>;
@@ -101,12 +103,15 @@ class LoopClosing {
 
   static Answer run(State& state, const LoopClosingOptions& options, Job job);
   static Closed close(const MapCopy& map, const LoopCloserOptions& options);
+  static Relocalized find(State& state, const LoopClosingOptions& options,
+                          const LoopKeyFrame& frame);
 
   std::optional<MapCorrection> takeUp(Answer answer, const Map& map);
   std::optional<MapCorrection> takeUp(Closed closed);
   void note(const LoopReport& report, const Map& map);
   void submitClosure(const Map& map);
   void forget(const std::vector<std::size_t>& loops, const std::string& refusal);
+  void rethrowKept();
   std::vector<std::size_t> newlyCulled(const Map& map);
 
   LoopClosingOptions options_;
@@ -115,7 +120,8 @@ class LoopClosing {
   std::vector<LoopEvent> events_;
   MapCopier copier_;
   std::optional<Relocalized> relocalized_;
-  std::vector<bool> forgotten_;  ///< Key frames that the thread need not know any more.
+  std::exception_ptr kept_error_;  ///< Came up where it was not the answer to the question.
+  std::vector<bool> forgotten_;    ///< Key frames that the thread need not know any more.
   std::size_t frames_waited_ = 0;
   std::size_t left_out_ = 0;
   bool closing_ = false;  ///< A correction is on its way.

@@ -113,7 +113,8 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
   DetectorOptions& detector = options.detector;
   app.add_option("--detector", detector.type,
                  "Where boxes come from: darknet, yolo (ONNX) and hog see people; file reads them "
-                 "(--boxes); motion proposes regions that move, without a model (experimental)")
+                 "(--boxes); masks reads label images in place of boxes (--masks); motion proposes "
+                 "regions that move, without a model (experimental)")
       ->check(CLI::IsMember(detectorTypes()))
       ->capture_default_str()
       ->group("Detection");
@@ -122,6 +123,17 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
   app.add_option("--weights", detector.weights, "Weights of a darknet model")->group("Detection");
   app.add_option("--boxes", detector.boxes,
                  "Boxes for --detector file; a line: timestamp class x_min y_min x_max y_max score")
+      ->group("Detection");
+  app.add_option(
+         "--masks", detector.masks,
+         "Folder for --detector masks: a PNG a frame, named by the time stamp of its colour "
+         "image; 8 or 16 bit, 0 = background, every other value may move")
+      ->group("Detection");
+  app.add_option("--mask-margin", detector.mask_margin,
+                 "Regions are that much larger than their masks (px): what lies at a silhouette "
+                 "is on neither side")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
       ->group("Detection");
   app.add_option(
          "--input-size", detector.input_size,
@@ -305,7 +317,8 @@ void declareOptions(CLI::App& app, SlamOptions& options) {
       "  hmcdyn_slam --dataset rgbd_dataset_freiburg3_walking_xyz --camera tum3 \\\n"
       "    --detector darknet --model yolo-fastest-1.1.cfg --weights yolo-fastest-1.1.weights \\\n"
       "    --filter hmc --output out\n"
-      "Exit codes: 0 done, 1 bad data, nothing tracked or a full disk, 2 bad usage.");
+      "Exit codes: 0 done, 1 bad data, nothing tracked, a full disk or an error in a part of the\n"
+      "system (results are written all the same), 2 bad usage.");
   declareInput(app, options);
   declareDetection(app, options);
   declareFilter(app, options);

@@ -26,27 +26,37 @@ DenseMapper::DenseMapper()
     : dense_(std::make_shared<DenseMap>()),
       worker_(
           [dense = dense_](const Job& job) {
-            const cv::Mat mask = staticMask(job.bgr.size(), job.boxes, job.dynamic_points);
+            cv::Mat mask = staticMask(job.bgr.size(), job.boxes, job.dynamic_points);
+            if (!job.labels.empty()) {
+              mask = withoutLabels(mask, job.labels);
+            }
             dense->add(job.key_frame, thinKeyFrame(job.bgr, job.depth, mask));
             return std::monostate{};
           },
           kQueue) {}
 
 void DenseMapper::add(std::size_t key_frame, const FrameOutcome& outcome) {
-  while (worker_.tryTake()) {
-  }
   std::vector<std::uint8_t> is_dynamic;
   for (const BoxDecision& box : outcome.filtered.stage.boxes) {
     is_dynamic.push_back(box.verdict.is_dynamic ? 1 : 0);
   }
-  worker_.submit({key_frame, outcome.image.bgr, outcome.image.depth,
-                  boxesToLeaveOut(outcome.boxes, is_dynamic), dynamicPoints(outcome)});
+  std::vector<DetectionBox> boxes;
+  if (outcome.mask.empty()) {
+    boxes = boxesToLeaveOut(outcome.boxes, is_dynamic);
+  }
+  worker_.submit({key_frame, outcome.image.bgr, outcome.image.depth, std::move(boxes),
+                  outcome.mask.labels, dynamicPoints(outcome)});
+  while (worker_.tryTake()) {
+  }
 }
 
-FusionResult DenseMapper::fuse(const Map& map) {
+void DenseMapper::finish() {
   while (worker_.pending() > 0) {
     worker_.take();
   }
+}
+
+FusionResult DenseMapper::fuse(const Map& map) {
   std::vector<KeyFramePose> poses;
   for (std::size_t k = 0; k < map.keyFrames().size(); ++k) {
     poses.push_back({k, map.poseOf(static_cast<int>(k))});

@@ -22,10 +22,14 @@ class DenseMapper {
  public:
   DenseMapper();
 
-  /// Hands over a key frame; waits where the thread is far behind.
+  /// Hands over a key frame; waits where the thread is far behind. Then rethrows what the thread
+  /// threw at an earlier one, which is not in the map.
   void add(std::size_t key_frame, const FrameOutcome& outcome);
 
-  /// The dense map with the poses that the key frames have now.
+  /// Waits for the thread. Rethrows as add() does: call it until it returns.
+  void finish();
+
+  /// The dense map with the poses that the key frames have now; after finish().
   FusionResult fuse(const Map& map);
 
  private:
@@ -34,6 +38,7 @@ class DenseMapper {
     cv::Mat bgr;
     cv::Mat depth;
     std::vector<DetectionBox> boxes;
+    cv::Mat labels;  ///< In place of the boxes, or empty.
     std::vector<cv::Point2f> dynamic_points;
   };
 

@@ -2,7 +2,12 @@
 #include "slam/pipeline/detection_feed.hpp"
 
 #include <optional>
+#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include <hmcdyn/label_image.hpp>
 
 #include "slam/detection/detector_factory.hpp"
 
@@ -12,11 +17,15 @@ namespace {
 std::optional<BoxCarrier> makeCarrier(const SlamOptions& options, const std::string& type) {
   BoxCarrierOptions carrier;
   carrier.max_bridge = options.bridge;
-  if (type == "file") {
-    carrier.duplicate_overlap = 1.0f;  // boxes from a file are taken as they are
+  if (type == "file" || type == "masks") {
+    carrier.duplicate_overlap = 1.0f;  // they are taken as they are
+  }
+  if (type == "masks") {
+    carrier.max_bridge = 0.0;  // a mask misses nothing
   }
   BoxCarrier checked(carrier);
-  const bool carries = options.mode == RunMode::kRealtime || options.bridge > 0.0;
+  const bool carries =
+      options.mode == RunMode::kRealtime || options.bridge > 0.0 || type == "masks";
   const bool detects = type != "none" && type != "motion";
   return detects && carries ? std::optional(std::move(checked)) : std::nullopt;
 }
@@ -28,6 +37,13 @@ std::optional<MotionRegions> makeRegions(const SlamOptions& options, const std::
   MotionRegionOptions regions;
   regions.seed = options.seed;
   return MotionRegions(regions);
+}
+
+std::optional<MaskFolder> openMasks(const DetectorOptions& options, const std::string& type,
+                                    const Rectifier& rectifier) {
+  return type == "masks" ? std::optional<MaskFolder>(std::in_place, options.masks, rectifier.size(),
+                                                     options.time_tolerance)
+                         : std::nullopt;
 }
 
 }  // namespace
@@ -42,8 +58,11 @@ DetectionFeed::DetectionFeed(const SlamOptions& options, TypedDetector detector,
     : realtime_(options.mode == RunMode::kRealtime),
       boxes_are_raw_(detector.type == "file"),
       rectifier_(std::move(rectifier)),
+      report_(report),
       thread_(std::move(detector.detector), std::move(report)),
       regions_(makeRegions(options, detector.type)),
+      masks_(openMasks(options.detector, detector.type, rectifier_)),
+      mask_margin_(options.detector.mask_margin),
       carrier_(makeCarrier(options, detector.type)) {}
 
 DetectionFeed::TypedDetector DetectionFeed::choose(const SlamOptions& options,
@@ -64,7 +83,7 @@ std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> box
 }
 
 void DetectionFeed::ask(const PreparedFrame& frame) {
-  if (regions_) {
+  if (regions_ || masks_) {
     return;
   }
   DetectionRequest request{frame.raw.index, frame.raw.timestamp,
@@ -76,7 +95,37 @@ void DetectionFeed::ask(const PreparedFrame& frame) {
   }
 }
 
+FrameBoxes DetectionFeed::maskOf(const PreparedFrame& frame) {
+  FrameBoxes result;
+  const StageTimer timer;
+  std::optional<FrameDetection> seen;
+  ++mask_counts_.requested;
+  try {
+    result.mask = makeFrameMask(rectifier_.depth(masks_->at(frame.raw.timestamp)), mask_margin_);
+    result.boxes = boundingBoxes(result.mask.labels, result.mask.regions);
+    result.detected = true;
+    ++mask_counts_.detected;
+    seen = FrameDetection{frame.raw.index, result.boxes};
+  } catch (const std::runtime_error& error) {
+    if (++mask_counts_.failed == 1) {
+      report_(
+          fmt::format("frame {} has no mask, boxes around earlier ones are carried on: {}; "
+                      "further frames without a mask are only counted",
+                      frame.raw.index, error.what()));
+    }
+  }
+  std::vector<DetectionBox> carried = carrier_->update(frame.image, seen);
+  if (!seen) {
+    result.boxes = std::move(carried);
+  }
+  result.carry_time = timer.elapsed("boxes");
+  return result;
+}
+
 FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
+  if (masks_) {
+    return maskOf(frame);
+  }
   FrameBoxes result;
   if (regions_) {
     const StageTimer timer;

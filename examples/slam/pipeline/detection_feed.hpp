@@ -11,6 +11,8 @@
 #include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detection_thread.hpp"
 #include "slam/detection/detector.hpp"
+#include "slam/detection/frame_mask.hpp"
+#include "slam/detection/mask_folder.hpp"
 #include "slam/detection/motion_regions.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
@@ -27,6 +29,7 @@ struct PreparedFrame {
 /// A frame's boxes, and where they come from.
 struct FrameBoxes {
   std::vector<DetectionBox> boxes;  ///< In the undistorted image.
+  FrameMask mask;                   ///< To the pixel what the boxes are around, where it is known.
   bool detected = false;            ///< By the detector in this very frame; else carried on.
   std::size_t bridged = 0;          ///< Boxes that the newest detection missed.
   double detect_wall_ms = 0.0;      ///< Of the detector's thread; 0 without an answer.
@@ -36,12 +39,13 @@ struct FrameBoxes {
 
 /// The boxes of each frame. Offline every frame waits for its own detection; in real time none
 /// waits, and boxes of an earlier frame are carried to the present. Boxes that the detector missed
-/// are bridged in both (SlamOptions::bridge).
+/// are bridged in both (SlamOptions::bridge). Masks are read when their frame is tracked, in both;
+/// where one is missing or cannot be used, the boxes around the masks before it are carried on.
 class DetectionFeed {
  public:
   /// @param own a detector in place of the one that the options name; it sees the undistorted
   /// image.
-  /// @throws std::invalid_argument or std::runtime_error where the detector cannot be used.
+  /// @throws std::invalid_argument or std::runtime_error where detector or masks cannot be used.
   DetectionFeed(const SlamOptions& options, Rectifier rectifier, Report report,
                 std::unique_ptr<ObjectDetector> own = nullptr);
 
@@ -51,7 +55,9 @@ class DetectionFeed {
   /// The boxes of a frame, asked for in this order.
   FrameBoxes boxesOf(const PreparedFrame& frame);
 
-  const DetectionCounts& counts() const noexcept { return thread_.counts(); }
+  const DetectionCounts& counts() const noexcept {
+    return masks_ ? mask_counts_ : thread_.counts();
+  }
   const std::string& detectorName() const noexcept { return thread_.detectorName(); }
 
  private:
@@ -65,13 +71,18 @@ class DetectionFeed {
   static TypedDetector choose(const SlamOptions& options, std::unique_ptr<ObjectDetector> own);
 
   std::vector<DetectionBox> rectified(std::vector<DetectionBox> boxes) const;
+  FrameBoxes maskOf(const PreparedFrame& frame);
 
   bool realtime_;
   bool boxes_are_raw_;  ///< Boxes from a file refer to the image as the camera saw it.
   Rectifier rectifier_;
+  Report report_;
   DetectionThread thread_;
   std::optional<MotionRegions> regions_;  ///< Instead of a detector.
-  std::optional<BoxCarrier> carrier_;     ///< Nothing where no box is ever to be carried.
+  std::optional<MaskFolder> masks_;       ///< The same.
+  int mask_margin_;
+  DetectionCounts mask_counts_;
+  std::optional<BoxCarrier> carrier_;  ///< Nothing where no box is ever to be carried.
 };
 
 }  // namespace hmcdyn::slam

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "slam/pipeline/command_line.hpp"
 #include "slam/pipeline/run.hpp"
 #include "slam/pipeline/stop_request.hpp"
+#include "slam/pipeline/summary.hpp"
 #include "support/command_line.hpp"
 
 namespace {
@@ -31,6 +31,9 @@ void printSummary(const nlohmann::json& summary, const std::filesystem::path& ou
               << " m over " << summary.at("evaluation").at("ate_m").at("pairs") << " poses";
   }
   std::cout << "\nresults in " << output.string() << '\n';
+  for (const nlohmann::json& error : summary.at("errors")) {
+    spdlog::error("{} failed in this run; see summary.json", error.at("part").get<std::string>());
+  }
 }
 
 int run(int argc, char** argv) {
@@ -45,9 +48,7 @@ int run(int argc, char** argv) {
     options.loops.closer.bundle.stop = &stop.flag();  // but for minutes of global adjustment
     const nlohmann::json summary = hmcdyn::slam::runSlam(options, [&] { return stop.requested(); });
     printSummary(summary, options.output);
-    const nlohmann::json& counts = summary.at("counts");
-    const bool written = counts.at("write_failures").empty();
-    return written && counts.at("frames_tracked") > 0 ? EXIT_SUCCESS : kBadData;
+    return hmcdyn::slam::exitCodeOf(summary);
   } catch (const std::invalid_argument& error) {
     spdlog::error("{}", error.what());
     return hmcdyn::support::kBadUsage;

@@ -8,6 +8,13 @@
 #include "slam/pipeline/feature_budget.hpp"
 
 namespace hmcdyn::slam {
+namespace {
+
+constexpr const char* kLocalMapping = "local mapping";
+constexpr const char* kLoopClosing = "loop closing";
+constexpr const char* kGoesOn = "the run goes on without its result";
+
+}  // namespace
 
 cv::Mat cornerMask(const Rectifier& rectifier) {
   if (rectifier.isIdentity()) {
@@ -21,8 +28,9 @@ cv::Mat cornerMask(const Rectifier& rectifier) {
 }
 
 Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibration,
-                   cv::Mat corner_mask)
-    : corner_mask_(std::move(corner_mask)),
+                   cv::Mat corner_mask, PartErrors& errors)
+    : errors_(errors),
+      corner_mask_(std::move(corner_mask)),
       extractor_(options.features),
       max_feature_factor_(options.max_feature_factor),
       filter_(options.filter),
@@ -30,41 +38,60 @@ Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibrat
       mapper_(options.mapping),
       loops_(calibration.pinhole, options.loops) {}
 
-Frame Pipeline::extract(const RgbdFrame& image, const std::vector<DetectionBox>& boxes) {
-  const int wanted = featureBudget(extractor_.options().features,
-                                   coveredShare(boxes, image.gray.size()), max_feature_factor_);
+Frame Pipeline::extract(const RgbdFrame& image, double covered_share) {
+  const int wanted =
+      featureBudget(extractor_.options().features, covered_share, max_feature_factor_);
   return makeFrame(image.index, image.timestamp,
                    extractor_.extract(image.gray, corner_mask_, wanted), image.depth,
                    extractor_.options().scale_factor);
 }
 
+std::optional<Eigen::Isometry3d> Pipeline::relocalize(const Frame& lost) {
+  std::optional<Eigen::Isometry3d> found;
+  errors_.attempt("relocalization", "the frame counts as not found",
+                  [&] { found = loops_.relocalize(lost, tracker_.map()); });
+  return found;
+}
+
+/// @param take gives a correction, or nothing. @return whether the map was moved.
+template <class Take>
+bool Pipeline::takeUp(const std::string& part, const Take& take) {
+  std::optional<MapCorrection> correction;
+  errors_.attempt(part, kGoesOn, [&] { correction = take(); });
+  if (correction) {
+    tracker_.apply(*correction);
+  }
+  return correction.has_value();
+}
+
 bool Pipeline::exchangeWithThreads(bool new_key_frame) {
-  bool moved = false;
-  if (const std::optional<MapCorrection> correction = mapper_.poll()) {
-    tracker_.apply(*correction);
-    moved = true;
+  bool moved = takeUp(kLocalMapping, [this] { return mapper_.poll(); });
+  const bool corrected = takeUp(kLoopClosing, [this] { return loops_.poll(tracker_.map()); });
+  if (corrected) {  // the adjustment began in the map as it was before: void
+    errors_.attempt(kLocalMapping, kGoesOn, [this] { mapper_.finish(); });
   }
-  if (const std::optional<MapCorrection> correction = loops_.poll(tracker_.map())) {
-    mapper_.finish();  // it began in the map as it was before: void
-    tracker_.apply(*correction);
-    moved = true;
-  }
+  moved = moved || corrected;
   if (new_key_frame) {
-    mapper_.adjust(tracker_.map());
-    loops_.process(tracker_.map());
+    errors_.attempt(kLocalMapping, kGoesOn, [this] { mapper_.adjust(tracker_.map()); });
+    errors_.attempt(kLoopClosing, kGoesOn, [this] { loops_.process(tracker_.map()); });
   }
   return moved;
 }
 
-FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox> boxes) {
+FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox> boxes,
+                               FrameMask mask) {
   FrameOutcome outcome;
   StageTimes& times = outcome.times;
   outcome.image = image;
   outcome.boxes = std::move(boxes);
+  outcome.mask = std::move(mask);
 
-  Frame frame = times.measure("features", [&] { return extract(image, outcome.boxes); });
-  outcome.filtered = times.measure(
-      "filter", [&] { return filter_.filter(image.gray, image.depth, outcome.boxes, frame); });
+  const double covered = outcome.mask.empty() ? coveredShare(outcome.boxes, image.gray.size())
+                                              : coveredShare(outcome.mask);
+  Frame frame = times.measure("features", [&] { return extract(image, covered); });
+  outcome.filtered = times.measure("filter", [&] {
+    return filter_.filter(image.gray, image.depth, outcome.boxes, frame, outcome.mask);
+  });
   outcome.points = frame.points;
   outcome.weight = frame.weight;
   outcome.size.reserve(frame.points.size());
@@ -72,9 +99,7 @@ FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox>
     outcome.size.push_back(point.size);
   }
   outcome.tracking = times.measure("track", [&] {
-    return tracker_.track(std::move(frame), [this](const Frame& lost) {
-      return loops_.relocalize(lost, tracker_.map());
-    });
+    return tracker_.track(std::move(frame), [this](const Frame& lost) { return relocalize(lost); });
   });
   if (outcome.tracking.failure == TrackingFailure::kNone) {
     log_.add(image.timestamp, outcome.tracking.camera_from_world, outcome.tracking.reference,
@@ -86,11 +111,16 @@ FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox>
 }
 
 void Pipeline::finish() {
-  if (const std::optional<MapCorrection> correction = mapper_.finish()) {
-    tracker_.apply(*correction);
-  }
-  while (const std::optional<MapCorrection> correction = loops_.finish(tracker_.map())) {
-    tracker_.apply(*correction);
+  takeUp(kLocalMapping, [this] { return mapper_.finish(); });
+  bool more = true;
+  while (more) {  // after an error as well: what threw is over and done with
+    bool failed = true;
+    const bool moved = takeUp(kLoopClosing, [&] {
+      std::optional<MapCorrection> correction = loops_.finish(tracker_.map());
+      failed = false;
+      return correction;
+    });
+    more = moved || failed;
   }
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <hmcdyn/dynamic_feature_filter.hpp>
@@ -9,12 +11,14 @@
 #include "slam/camera/calibration.hpp"
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
+#include "slam/detection/frame_mask.hpp"
 #include "slam/features/orb_extractor.hpp"
 #include "slam/filtering/motion_filter.hpp"
 #include "slam/mapping/local_mapper.hpp"
 #include "slam/mapping/loop_closing.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
+#include "slam/pipeline/part_errors.hpp"
 #include "slam/pipeline/trajectory_log.hpp"
 #include "slam/tracking/tracker.hpp"
 
@@ -24,6 +28,7 @@ namespace hmcdyn::slam {
 struct FrameOutcome {
   RgbdFrame image;                      ///< As processed: undistorted.
   std::vector<DetectionBox> boxes;      ///< In the undistorted image.
+  FrameMask mask;                       ///< What the boxes are around, where there is a mask.
   KeyPoints points;                     ///< N key points.
   std::vector<float> size;              ///< N diameters of the described patches (px).
   std::vector<float> weight;            ///< N weights as the tracker used them.
@@ -34,14 +39,19 @@ struct FrameOutcome {
 };
 
 /// The tracking thread's work on a frame, in the order of its data: features, filter, tracking; and
-/// its dealings with the mapping and the loop thread.
+/// its dealings with the mapping and the loop thread. What those threads throw is noted, and
+/// tracking goes on without their result.
 class Pipeline {
  public:
   /// @param corner_mask where corners are the world's; empty = everywhere.
-  Pipeline(const SlamOptions& options, const CameraCalibration& calibration, cv::Mat corner_mask);
+  /// @param errors of the threads; must outlive the pipeline.
+  Pipeline(const SlamOptions& options, const CameraCalibration& calibration, cv::Mat corner_mask,
+           PartErrors& errors);
 
-  /// @param image undistorted. @param boxes of the detector, in that image.
-  FrameOutcome process(const RgbdFrame& image, std::vector<DetectionBox> boxes);
+  /// @param image undistorted. @param boxes of the detector, in that image. @param mask in place of
+  /// the boxes, which are those around its regions then.
+  FrameOutcome process(const RgbdFrame& image, std::vector<DetectionBox> boxes,
+                       FrameMask mask = {});
 
   /// Waits for the threads and takes up what they have.
   void finish();
@@ -55,9 +65,13 @@ class Pipeline {
   const LocalMapper& mapper() const noexcept { return mapper_; }
 
  private:
-  Frame extract(const RgbdFrame& image, const std::vector<DetectionBox>& boxes);
+  Frame extract(const RgbdFrame& image, double covered_share);
+  std::optional<Eigen::Isometry3d> relocalize(const Frame& lost);
+  template <class Take>
+  bool takeUp(const std::string& part, const Take& take);
   bool exchangeWithThreads(bool new_key_frame);
 
+  PartErrors& errors_;
   cv::Mat corner_mask_;
   OrbExtractor extractor_;
   double max_feature_factor_;

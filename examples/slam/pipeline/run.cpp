@@ -103,7 +103,8 @@ FrameOutcome trackFrame(const PreparedFrame& frame, FrameBoxes boxes, Pipeline& 
   before.add(frame.rectify_time);
   before.add({"detect", boxes.detect_wall_ms, boxes.detect_cpu_ms});
   before.add(boxes.carry_time);
-  FrameOutcome outcome = pipeline.process(frame.image, std::move(boxes.boxes));
+  FrameOutcome outcome =
+      pipeline.process(frame.image, std::move(boxes.boxes), std::move(boxes.mask));
   outcome.times.prepend(before);
   return outcome;
 }
@@ -116,7 +117,7 @@ class WriteAttempts {
     try {
       write();
       return true;
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {
       spdlog::error("{}", error.what());
       failures_.emplace_back(error.what());
       return false;
@@ -128,6 +129,9 @@ class WriteAttempts {
   std::vector<std::string> failures_;
 };
 
+constexpr const char* kDenseMapping = "dense mapping";
+constexpr const char* kMapLacksOne = "the dense map lacks a key frame";
+
 /// All parts of a run.
 struct Run {
   Run(const SlamOptions& run_options, const CameraCalibration& calibration,
@@ -136,7 +140,8 @@ struct Run {
         source(makeSource(options, calibration)),
         rectifier(calibration),
         detections(options, rectifier, warn, std::move(detector)),
-        pipeline(options, calibration, cornerMask(rectifier)),
+        errors([](const std::string& message) { spdlog::error("{}", message); }),
+        pipeline(options, calibration, cornerMask(rectifier), errors),
         writer(options) {
     if (options.dense_map) {
       dense.emplace();
@@ -147,6 +152,7 @@ struct Run {
   std::unique_ptr<FrameSource> source;
   Rectifier rectifier;
   DetectionFeed detections;
+  PartErrors errors;
   Pipeline pipeline;
   std::optional<DenseMapper> dense;
   RunWriter writer;
@@ -167,7 +173,8 @@ bool doFrame(Run& run, const PreparedFrame& frame) {
     run.counts.latency_ms.push_back(1e3 * *lag);
   }
   if (run.dense && outcome.tracking.new_key_frame) {
-    run.dense->add(run.pipeline.map().keyFrames().size() - 1, outcome);
+    run.errors.attempt(kDenseMapping, kMapLacksOne,
+                       [&] { run.dense->add(run.pipeline.map().keyFrames().size() - 1, outcome); });
   }
   return run.writing.attempt(
       [&] { run.writer.write(outcome, run.pipeline.map(), run.pipeline.loops()); });
@@ -178,10 +185,17 @@ void doFrames(Run& run, const std::function<bool()>& stop) {
   support::ProgressBar progress("frames", run.source->expectedFrames().value_or(0),
                                 !run.options.quiet);
   bool goes_on = true;
-  while (goes_on) {
+  const auto next = [&] {
     run.counts.stopped = stop && stop();
     const std::optional<PreparedFrame> frame = run.counts.stopped ? std::nullopt : feed.next();
     goes_on = frame && doFrame(run, *frame);
+  };
+  while (goes_on) {
+    if (run.counts.frames_tracked == 0) {
+      next();  // what it throws is the caller's: there is nothing to lose yet
+    } else if (!run.errors.attempt("tracking", "the frames end here", next)) {
+      goes_on = false;
+    }
     progress.update(run.source->counts().taken_up,
                     fmt::format("{} tracked", run.counts.frames_tracked));
   }
@@ -193,6 +207,16 @@ void doFrames(Run& run, const std::function<bool()>& stop) {
   }
 }
 
+void finishDenseMap(Run& run) {
+  while (!run.errors.attempt(kDenseMapping, kMapLacksOne, [&] { run.dense->finish(); })) {
+  }
+  run.errors.attempt(kDenseMapping, "there is no map.ply", [&] {
+    const FusionResult map = run.dense->fuse(run.pipeline.map());
+    run.counts.map_points = map.cloud.position.size();
+    run.writing.attempt([&] { run.writer.writeMap(map.cloud); });
+  });
+}
+
 nlohmann::json finish(Run& run) {
   const SlamOptions& options = run.options;
   run.pipeline.finish();
@@ -200,15 +224,14 @@ nlohmann::json finish(Run& run) {
   run.writing.attempt([&] { run.writer.writeLoops(run.pipeline.map(), run.pipeline.loops()); });
   run.writing.attempt([&] { run.writer.finish(run.pipeline.trajectory(), run.pipeline.map()); });
   if (run.dense) {
-    const FusionResult map = run.dense->fuse(run.pipeline.map());
-    run.counts.map_points = map.cloud.position.size();
-    run.writing.attempt([&] { run.writer.writeMap(map.cloud); });
+    finishDenseMap(run);
   }
   for (const std::string& warning : filterWarnings(run.counts, options)) {
     warn(warning);
   }
   const std::filesystem::path groundtruth = groundtruthFile(options);
   run.counts.write_failures = run.writing.failures();
+  run.counts.errors = run.errors.all();
   nlohmann::json summary =
       summarizeRun(options, {run.source->name(), run.detections.detectorName()}, run.counts,
                    run.pipeline, run.times, groundtruth);

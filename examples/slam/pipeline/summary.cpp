@@ -2,10 +2,12 @@
 #include "slam/pipeline/summary.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 
 #include <Eigen/Core>
 #include <ceres/version.h>
+#include <fmt/format.h>
 #include <nanoflann.hpp>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
@@ -21,6 +23,14 @@ nlohmann::json toJson(const evaluate::Statistics& statistics) {
   return {{"rmse", statistics.rmse},  {"mean", statistics.mean}, {"median", statistics.median},
           {"std", statistics.std},    {"min", statistics.min},   {"max", statistics.max},
           {"pairs", statistics.count}};
+}
+
+nlohmann::json toJson(const std::vector<PartError>& errors) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const PartError& error : errors) {
+    json.push_back({{"part", error.part}, {"error", error.error}, {"times", error.times}});
+  }
+  return json;
 }
 
 double share(std::size_t part, std::size_t whole) {
@@ -132,6 +142,11 @@ nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
   summary["options"] = toJson(options, names.detector);
   summary["versions"] = libraryVersions();
   summary["warnings"] = filterWarnings(counts, options);
+  for (const PartError& error : counts.errors) {
+    summary["warnings"].push_back(
+        fmt::format("{} failed {} times, at first with: {}", error.part, error.times, error.error));
+  }
+  summary["errors"] = toJson(counts.errors);
   if (!groundtruth.empty()) {
     summary["evaluation"] = evaluateTrajectory(groundtruth, options.output / "trajectory.txt");
     summary["evaluation_online"] =
@@ -210,6 +225,13 @@ nlohmann::json toJson(const RunCounts& counts) {
           {"dense_map_points", counts.map_points},
           {"stopped_by_signal", counts.stopped},
           {"write_failures", counts.write_failures}};
+}
+
+int exitCodeOf(const nlohmann::json& summary) {
+  const nlohmann::json& counts = summary.at("counts");
+  const bool good = counts.at("frames_tracked") > 0 && counts.at("write_failures").empty() &&
+                    summary.at("errors").empty();
+  return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 nlohmann::json libraryVersions() {

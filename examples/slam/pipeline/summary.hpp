@@ -13,6 +13,7 @@
 
 #include "slam/detection/detection_thread.hpp"
 #include "slam/pipeline/options.hpp"
+#include "slam/pipeline/part_errors.hpp"
 #include "slam/pipeline/pipeline.hpp"
 #include "slam/source/frame_source.hpp"
 #include "slam/tracking/tracker.hpp"
@@ -40,6 +41,7 @@ struct RunCounts {
   bool stopped = false;                            ///< By a signal.
   std::vector<std::string> write_failures;         ///< File and reason; the first ended the run.
   std::vector<double> latency_ms;  ///< In real time: from a frame's due time to its pose.
+  std::vector<PartError> errors;   ///< What parts of the system threw.
   SourceCounts source;
   DetectionCounts detections;
 
@@ -67,6 +69,10 @@ nlohmann::json toJson(const SlamOptions& options, const std::string& detector_na
 
 /// The counts as JSON, with the tracking rate (eq. 11).
 nlohmann::json toJson(const RunCounts& counts);
+
+/// What hmcdyn_slam ends with: 0, or 1 where no frame was tracked, a result could not be written,
+/// or a part of the system threw. @param summary of runSlam().
+int exitCodeOf(const nlohmann::json& summary);
 
 /// Versions of this library and of what it was built with.
 nlohmann::json libraryVersions();

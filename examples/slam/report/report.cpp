@@ -13,6 +13,7 @@
 #include "slam/report/assets.hpp"
 #include "slam/report/chart_data.hpp"
 #include "slam/report/html.hpp"
+#include "slam/report/thin_frames.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -135,6 +136,29 @@ std::string warningList(const ReportInput& input) {
 
 std::string chart(const char* id, const char* title) {
   return fmt::format("<div class=\"chart card\" id=\"{}\"><h3>{}</h3></div>\n", id, title);
+}
+
+/// What the charts are drawn from: of a long run not all frames.
+ReportInput shownOf(const ReportInput& input) {
+  ReportInput shown;
+  shown.stages = input.stages;
+  shown.loops = input.loops;
+  for (const std::size_t i : framesToShow(input)) {
+    shown.frames.push_back(input.frames[i]);
+  }
+  return shown;
+}
+
+std::string thinningNote(std::size_t shown, std::size_t all) {
+  return shown == all
+             ? ""
+             : fmt::format(
+                   "<p class=\"note\">The charts show {} of {} frames: of each stretch of the run "
+                   "the first one and those with the largest error, time, dynamic points and "
+                   "boxes, "
+                   "the fewest static points, and the first one lost. Figures and tables are of "
+                   "all frames; every frame is in trajectory.txt and timings.csv.</p>\n",
+                   shown, all);
 }
 
 std::string trajectorySection(const Json& data) {
@@ -288,12 +312,15 @@ std::vector<ReportFrame> withGroundTruth(std::vector<ReportFrame> frames,
 
 std::string renderReport(const ReportInput& input) {
   checkStages(input);
-  const Json data = chartData(input);
+  const ReportInput shown = shownOf(input);
+  const Json data = chartData(shown);
   std::string html = head(input.title);
   html += "<body>\n<header><h1>" + escapeHtml(input.title) + "</h1>\n";
   html += fmt::format("<p class=\"note\">hmcdyn_slam, {} frames</p></header>\n<main>\n",
                       input.frames.size());
-  html += headline(input) + warningList(input) + trajectorySection(data) + timeSection(data);
+  html += headline(input) + warningList(input) +
+          thinningNote(shown.frames.size(), input.frames.size()) + trajectorySection(data) +
+          timeSection(data);
   html +=
       "<h2>Time a frame</h2>\n<p class=\"note\">Wall time by stage, one on top of the "
       "other.</p>\n" +

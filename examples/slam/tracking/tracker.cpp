@@ -54,6 +54,8 @@ const char* toString(TrackingFailure failure) noexcept {
       return "too few key points";
     case TrackingFailure::kTooFewMatches:
       return "too few matches";
+    case TrackingFailure::kUnconfirmed:
+      return "not confirmed";
   }
   return "invalid";
 }
@@ -144,12 +146,33 @@ TrackingResult Tracker::initialize(Frame frame) {
   return result;
 }
 
-TrackingResult Tracker::lose() {
+TrackingResult Tracker::lose(TrackingFailure failure) {
   lost_ = true;
   motion_.reset();
+  if (failure != TrackingFailure::kUnconfirmed) {
+    unconfirmed_.reset();
+  }
   TrackingResult result;
-  result.failure = TrackingFailure::kTooFewMatches;
+  result.failure = failure;
   return result;
+}
+
+bool Tracker::isReachable(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                          double seconds) const {
+  constexpr double kNoise = 0.05;  // m, rad: of two poses that were found on their own
+  const Eigen::Isometry3d way = to * from.inverse();
+  return way.translation().norm() <= options_.fastest * seconds + kNoise &&
+         Eigen::AngleAxisd(way.linear()).angle() <= options_.fastest_turn * seconds + kNoise;
+}
+
+bool Tracker::isBelievable(double timestamp, const Eigen::Isometry3d& found) const {
+  constexpr double kWithin = 1.0;  // s: later, nearly everything can be reached
+  const double since = timestamp - last_->timestamp;
+  if (since <= kWithin && isReachable(last_->camera_from_world, found, since)) {
+    return true;
+  }
+  return unconfirmed_ && timestamp - unconfirmed_->first <= kWithin &&
+         isReachable(unconfirmed_->second, found, timestamp - unconfirmed_->first);
 }
 
 void Tracker::apply(const MapCorrection& correction) {
@@ -161,6 +184,7 @@ void Tracker::apply(const MapCorrection& correction) {
       last_->camera_from_world * map_.poseOf(reference).inverse();
   map_.apply(correction);
   last_->camera_from_world = from_reference * map_.poseOf(reference);
+  unconfirmed_.reset();  // of the map as it was
   motion_.relocate(last_->camera_from_world);
 }
 
@@ -258,10 +282,11 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
     }
   }
   std::vector<int> around = candidates;
-  if (coarse.refinement.inliers < options_.min_inliers) {
+  const bool search = coarse.refinement.inliers < options_.min_inliers;
+  if (search) {
     coarse = findAgain(frame, grid, candidates, by_place);
     if (coarse.refinement.inliers < options_.min_inliers) {
-      return lose();
+      return lose(TrackingFailure::kTooFewMatches);
     }
     around = map_.pointsOf(map_.nearestKeyFrames(coarse.refinement.camera_from_world));
   }
@@ -269,8 +294,13 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   const Estimate fine =
       estimate(frame, grid, around, coarse.refinement.camera_from_world, options_.refined_radius);
   if (!fine.refinement.succeeded() || fine.refinement.inliers < options_.min_inliers) {
-    return lose();
+    return lose(TrackingFailure::kTooFewMatches);
   }
+  if (search && !isBelievable(frame.timestamp, fine.refinement.camera_from_world)) {
+    unconfirmed_.emplace(frame.timestamp, fine.refinement.camera_from_world);
+    return lose(TrackingFailure::kUnconfirmed);
+  }
+  unconfirmed_.reset();
 
   for (std::size_t k = 0; k < fine.search.matches.size(); ++k) {
     if (fine.refinement.inlier[k] != 0) {

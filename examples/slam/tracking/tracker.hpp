@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -47,6 +48,10 @@ struct TrackerOptions {
   /// A key frame looks for points at its place that none of so many key frames before it saw: the
   /// local map has lost them, and they would be made again at each visit, without end.
   int forgotten_after = 20;
+  /// How fast a camera moves (m/s, rad/s). A lost frame that is found where the camera can have got
+  /// to is believed: within a second of the last tracked frame, else after the frame found before.
+  double fastest = 2.0;
+  double fastest_turn = 3.0;
   std::uint32_t seed = 1;  ///< Of the random draws in relocalisation.
 };
 
@@ -55,9 +60,10 @@ enum class TrackingFailure : std::uint8_t {
   kNone,             ///< It has one.
   kTooFewKeyPoints,  ///< Not enough static key points with depth to start a map.
   kTooFewMatches,    ///< Neither prediction nor relocalisation found enough map points.
+  kUnconfirmed,      ///< Relocalised, far from the last known place: the next frame has to agree.
 };
 
-/// "none", "too few key points" or "too few matches".
+/// "none", "too few key points", "too few matches" or "not confirmed".
 const char* toString(TrackingFailure failure) noexcept;
 
 struct TrackingResult {
@@ -72,7 +78,8 @@ struct TrackingResult {
 
 /// Camera tracking against a small local map: prediction by the motion model, projection matching,
 /// weighted refinement (eq. 9-10), fusion with the motion model, key frames. The first frame's
-/// camera is the world's origin.
+/// camera is the world's origin. A frame that is found again far from where the last one was
+/// changes nothing until the next one is found beside it.
 class Tracker {
  public:
   Tracker(const PinholeCamera& camera, const TrackerOptions& options);
@@ -105,7 +112,10 @@ class Tracker {
                      const std::vector<int>& candidates, const Relocalize& by_place) const;
   bool needsKeyFrame(const Frame& frame) const;
   TrackingResult initialize(Frame frame);
-  TrackingResult lose();
+  TrackingResult lose(TrackingFailure failure);
+  bool isBelievable(double timestamp, const Eigen::Isometry3d& found) const;
+  bool isReachable(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                   double seconds) const;
   bool liesOn(const Frame& frame, const PointMatch& match) const;
   void tieToForgottenPoints(Frame& frame, const KeyPointGrid& grid) const;
   void countSightings(const Frame& frame, const ProjectionSearch& search);
@@ -116,6 +126,7 @@ class Tracker {
   std::optional<Frame> last_;  ///< The last tracked frame.
   MotionModel motion_;
   bool lost_ = false;
+  std::optional<std::pair<double, Eigen::Isometry3d>> unconfirmed_;  ///< Time (s) and pose.
   mutable PoseRefinementWorkspace workspace_;  ///< Memory only: changes no result.
 };
 

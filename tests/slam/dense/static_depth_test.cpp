@@ -49,6 +49,23 @@ TEST(StaticMask, TakesWhatCoversNothing) {
   EXPECT_EQ(cv::countNonZero(staticMask({40, 20}, all, {})), 0);
 }
 
+TEST(WithoutLabels, LeavesOutTheLabelledPixelsWithTheMargin) {
+  StaticDepthOptions options;
+  options.box_margin = 2.0f;
+  cv::Mat labels = cv::Mat::zeros(20, 40, CV_32SC1);
+  labels.at<int>(5, 10) = 70000;
+  labels.at<int>(0, 0) = 1;
+  cv::Mat mask(20, 40, CV_8UC1, cv::Scalar(255));
+  mask.at<std::uint8_t>(19, 39) = 0;
+  const cv::Mat rest = withoutLabels(mask, labels, options);
+  EXPECT_EQ(40 * 20 - cv::countNonZero(rest), 25 + 9 + 1);
+  EXPECT_EQ(rest.at<std::uint8_t>(7, 12), 0);
+  EXPECT_EQ(rest.at<std::uint8_t>(8, 12), 255);
+  EXPECT_EQ(cv::countNonZero(mask), 40 * 20 - 1) << "the mask given stays";
+  EXPECT_THROW(withoutLabels(mask, labels.t(), options), std::invalid_argument);
+  EXPECT_THROW(withoutLabels(mask, cv::Mat(20, 40, CV_8UC3), options), std::invalid_argument);
+}
+
 TEST(BoxesToLeaveOut, ArePersonsAndWhateverMoves) {
   const std::vector<DetectionBox> boxes{box(1, 0, 1, 1, 0), box(2, 0, 2, 1, 56),
                                         box(3, 0, 3, 1, 56)};

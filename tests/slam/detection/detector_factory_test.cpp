@@ -34,12 +34,22 @@ cv::Mat noise(int rows, int columns) {
 }
 
 TEST(DetectorFactory, AnUnknownTypeListsTheTypes) {
-  EXPECT_TRUE(
-      mentions(refusal(ofType("yolov9")), {"'yolov9'", "darknet, yolo, file, hog, motion, none"}));
+  EXPECT_TRUE(mentions(refusal(ofType("yolov9")),
+                       {"'yolov9'", "darknet, yolo, file, hog, motion, masks, none"}));
 }
 
 TEST(DetectorFactory, AFileDetectorNeedsItsFile) {
   EXPECT_TRUE(mentions(refusal(ofType("file")), {"file", "--boxes is not given"}));
+}
+
+TEST(DetectorFactory, MasksNeedTheirFolderAndTheirType) {
+  EXPECT_TRUE(mentions(refusal(ofType("masks")), {"masks", "--masks is not given"}));
+  DetectorOptions options = ofType("none");
+  options.masks = "mask";
+  EXPECT_TRUE(mentions(refusal(options), {"--masks is given", "'none'", "--detector masks"}));
+  options = ofType("none");
+  options.mask_margin = -1;
+  EXPECT_TRUE(mentions(refusal(options), {"mask_margin is -1 px"}));
 }
 
 TEST(DetectorFactory, ValuesOutOfRangeAreNamed) {

@@ -172,8 +172,9 @@ TEST(LoopDetector, ThreeHitsInSuccessionAreALoopWithItsMotion) {
   }
 }
 
-// Of several candidates that pass one is the loop, that with the most inliers.
-TEST(LoopDetector, TheBestCandidateOutvotesTheOthers) {
+// Key frames that see the same points are one candidate, and the one that looks most alike stands
+// for them.
+TEST(LoopDetector, APlaceIsOneCandidate) {
   Corridor corridor;
   LoopDetector detector(kLens);
   walkAway(detector, corridor);
@@ -183,8 +184,47 @@ TEST(LoopDetector, TheBestCandidateOutvotesTheOthers) {
   ASSERT_TRUE(report.constraint);
   EXPECT_EQ(report.constraint->from, 1U);  // from where all of it is seen
   EXPECT_EQ(verdictOn(report, 1), LoopVerdict::kAccepted);
+  const auto good = std::count_if(report.candidates.begin(), report.candidates.end(),
+                                  [](const LoopCandidate& candidate) {
+                                    return candidate.verification.verdict != LoopVerdict::kLowScore;
+                                  });
+  EXPECT_EQ(good, 1);
+  EXPECT_GT(report.candidates[0].place_score, 1.5 * report.candidates[0].score);
+  EXPECT_LT(report.candidates[0].place_score, 3.0 * report.candidates[0].score) << "of three";
+}
+
+// A lone key frame looks as much alike as each of three that see the same.
+TEST(LoopDetector, APlaceOutweighsAKeyFrameThatIsAlone) {
+  for (const bool grouped : {true, false}) {
+    LoopDetectorOptions options;
+    options.min_relative_place = grouped ? 0.75 : 0.0;
+    Corridor corridor;
+    LoopDetector detector(kLens, options);
+    detector.process(corridor.next(0.3, 7));  // key frame 0, on a visit of its own
+    walkAway(detector, corridor);
+    const LoopReport report = detector.process(corridor.next(0.3, 1));
+    const bool has_lone = std::any_of(report.candidates.begin(), report.candidates.end(),
+                                      [](const LoopCandidate& c) { return c.id == 0; });
+    ASSERT_FALSE(report.candidates.empty());
+    EXPECT_EQ(report.candidates[0].id, 2U);
+    EXPECT_EQ(has_lone, !grouped);
+  }
+}
+
+// Of several places that pass one is the loop, that with the most inliers.
+TEST(LoopDetector, TheBestPlaceOutvotesTheOthers) {
+  LoopDetectorOptions options;
+  options.min_relative_place = 0.0;
+  Corridor corridor;
+  LoopDetector detector(kLens, options);
+  detector.process(corridor.next(0.75, 7));  // key frame 0, alone and farther off
+  walkAway(detector, corridor);
+  detector.process(corridor.next(0.1, 1));
+  detector.process(corridor.next(0.3, 1));
+  const LoopReport report = detector.process(corridor.next(0.3, 1));
+  ASSERT_TRUE(report.constraint);
+  EXPECT_EQ(report.constraint->from, 2U);
   EXPECT_EQ(verdictOn(report, 0), LoopVerdict::kOutvoted);
-  EXPECT_EQ(verdictOn(report, 2), LoopVerdict::kOutvoted);
 }
 
 TEST(LoopDetector, HitsThatOtherPlacesInterruptAreNoLoop) {
@@ -303,6 +343,10 @@ TEST(LoopDetector, MistakesAreNamed) {
   options.min_consistent = 0;
   EXPECT_EQ(invalidArgumentOf([&] { const LoopDetector detector(kLens, options); }),
             "options.min_consistent is 0, expected at least 1");
+  options = {};
+  options.place_size = 0;
+  EXPECT_EQ(invalidArgumentOf([&] { const LoopDetector detector(kLens, options); }),
+            "options.place_size is 0, expected at least 1");
   LoopDetector detector(kLens);
   const LoopKeyFrame frame = corridor.next(0.0);
   detector.process(frame);

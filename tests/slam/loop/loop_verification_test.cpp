@@ -15,6 +15,7 @@
 
 #include "invalid_argument.hpp"
 #include "loop/place_scene.hpp"
+#include "loop/poster.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -114,25 +115,14 @@ TEST(LoopVerification, ARevisitFromTheSideIsAccepted) {
 
 // Two rooms that have something in common.
 
-/// A poster of 1.1 m x 0.8 m, at the origin of its own frame.
-Landmarks poster(int n) {
-  Random random(100);
-  return scattered(random, n, {-0.55, -0.4, 0.0}, {0.55, 0.4, 0.0});
-}
-
 /// A room with things in front of its walls, and with a poster on the wall.
 Landmarks roomWithPoster(std::uint32_t seed, const Eigen::Vector3d& where, int on_poster) {
-  Landmarks landmarks = room(seed);
-  add(landmarks, movedBy(poster(on_poster), motionOf(Eigen::Vector3d::Zero(), where)));
-  return landmarks;
+  return withPoster(room(seed), where, on_poster);
 }
 
 /// A bare wall, with pictures and the poster on it.
 Landmarks wallWithPoster(std::uint32_t seed, const Eigen::Vector3d& where, int on_poster) {
-  Random random(seed);
-  Landmarks landmarks = scattered(random, 250, {-1.5, -1.1, 2.4}, {1.5, 1.1, 2.4});
-  add(landmarks, movedBy(poster(on_poster), motionOf(Eigen::Vector3d::Zero(), where)));
-  return landmarks;
+  return withPoster(pictureWall(seed), where, on_poster);
 }
 
 void expectLocalSupport(const LoopVerification& found, const std::string& what) {

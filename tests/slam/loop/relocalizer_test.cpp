@@ -14,6 +14,7 @@
 
 #include "invalid_argument.hpp"
 #include "loop/place_scene.hpp"
+#include "loop/poster.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -165,6 +166,62 @@ TEST(Relocalizer, ARoomThatOnlyLooksAlikeIsNotFound) {
   const RelocalizationResult result = known.find(lostAt(other, at(0.0)));
   EXPECT_FALSE(result.camera_from_world);
   EXPECT_GT(result.most_matches, 100U);
+}
+
+// A lost camera sees the poster of a known room in another one.
+TEST(Relocalizer, APosterThatHangsInTwoPlacesDoesNotFoolIt) {
+  struct Places {
+    Landmarks known;
+    Landmarks other;
+  };
+  constexpr int kOnWall = 700;  // some 700 key points in the image, as ORB has them
+  for (const int on_poster : {60, 120, 250, 500}) {
+    for (const Places& places :
+         {Places{withPoster(room(31), {-0.4, 0.2, 2.4}, on_poster),
+                 withPoster(room(32), {0.3, -0.2, 2.2}, on_poster)},
+          Places{withPoster(pictureWall(33, kOnWall), {-0.4, 0.2, 2.4}, on_poster),
+                 withPoster(pictureWall(34, kOnWall), {0.2, 0.0, 2.4}, on_poster)}}) {
+      const KnownRoom known(places.known);
+      const RelocalizationResult deceived = known.find(lostAt(places.other, at(0.0)));
+      EXPECT_FALSE(deceived.camera_from_world) << on_poster;
+      EXPECT_GE(deceived.contradicted, 1U) << on_poster << ": the test does not tell";
+      // Its own poster is as good as anything else.
+      const RelocalizationResult found = known.find(lostAt(places.known, at(0.0)));
+      ASSERT_TRUE(found.camera_from_world) << on_poster;
+      EXPECT_LT(metresBetween(*found.camera_from_world, at(0.0)), 0.01) << on_poster;
+      RelocalizerOptions trusting;
+      trusting.min_coverage = 0.0;
+      EXPECT_TRUE(known.find(lostAt(places.other, at(0.0)), trusting).camera_from_world);
+    }
+  }
+}
+
+// People cover two thirds of the image: what is behind them is not seen, and denies nothing.
+TEST(Relocalizer, WhatIsHiddenIsNoContradiction) {
+  const Landmarks landmarks = room(35);
+  const KnownRoom known(landmarks);
+  const LoopKeyFrame all = lostAt(landmarks, at(0.1));
+  LoopKeyFrame some;
+  some.camera_from_world = all.camera_from_world;
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    if (all.points.u[i] < 213.0f) {
+      some.descriptors.push_back(all.descriptors.row(static_cast<int>(i)));
+      some.points.push_back(all.points.u[i], all.points.v[i], all.points.depth[i]);
+      some.sigma.push_back(all.sigma[i]);
+    }
+  }
+  // One of them has a few corners of his own, which the filter missed.
+  Random random(36);
+  for (int i = 0; i < 12; ++i) {
+    some.descriptors.push_back(randomDescriptor(random));
+    some.points.push_back(static_cast<float>(random.uniform(400.0, 470.0)),
+                          static_cast<float>(random.uniform(200.0, 270.0)), 1.5f);
+    some.sigma.push_back(1.0f);
+  }
+  const RelocalizationResult found = known.find(some);
+  ASSERT_TRUE(found.camera_from_world);
+  EXPECT_LT(metresBetween(*found.camera_from_world, at(0.1)), 0.01);
+  EXPECT_EQ(found.contradicted, 0U);
 }
 
 TEST(Relocalizer, NothingIsFoundInAnEmptyMapOrByAnEmptyFrame) {

@@ -221,6 +221,42 @@ TEST(LoopClosing, AClosureThatThrowsIsOverAndDoneWith) {
   EXPECT_NE(invalidArgumentOf([&] { walk(tour, loops, kBack + 20); }), "nothing thrown");
 }
 
+// Key frames wait in the queue before the question where a lost frame is; one of them throws.
+TEST(LoopClosing, WhatAKeyFrameThrewIsNotTheAnswerToARelocalization) {
+  LoopClosingOptions options;
+  options.detector.verification.radius = -1.0;  // looked at where there is a candidate to verify
+  options.delay = 100;
+  MapTour tour(hall(77, 1500), kDrift);
+  LoopClosing loops(kLens, options);
+  while (tour.truth.size() < kFound + 1) {
+    tour.step();
+    loops.process(tour.map);
+    if (tour.truth.size() <= kFound) {
+      EXPECT_EQ(finish(tour, loops), 0);
+    }
+  }
+  const auto found = loops.relocalize(tour.seenFrom(20), tour.map);
+  ASSERT_TRUE(found);
+  EXPECT_LT(metresBetween(*found, tour.map.poseOf(20)), 0.01);
+  EXPECT_EQ(invalidArgumentOf([&] { loops.poll(tour.map); }),
+            "options.radius is -1.000000, expected finite and > 0");
+  EXPECT_FALSE(loops.finish(tour.map));
+}
+
+TEST(LoopClosing, ARelocalizationThatThrowsIsOverAndDoneWith) {
+  LoopClosingOptions options;
+  options.relocalizer.pnp_iterations = 0;
+  MapTour tour(hall(77, 1500), kDrift);
+  LoopClosing loops(kLens, options);
+  walk(tour, loops, 10);
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_EQ(invalidArgumentOf([&] { loops.relocalize(tour.seenFrom(5), tour.map); }),
+              "options.pnp_iterations is 0, expected at least 1");
+  }
+  walk(tour, loops, 12);
+  EXPECT_EQ(finish(tour, loops), 0);
+}
+
 TEST(LoopClosing, AStopEndsTheAdjustmentAndTheMapStays) {
   const std::atomic<bool> stop{true};
   LoopClosingOptions options;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/report/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -8,6 +9,7 @@
 
 #include "slam/dataset/temporary_folder.hpp"
 #include "slam/report/sample_run.hpp"
+#include "slam/report/thin_frames.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -58,6 +60,61 @@ TEST(Report, PicturesBeyondTheBoundAreLeftOutAndCounted) {
   const std::string html = renderReport(input);
   EXPECT_LT(html.size(), 9'000'000U);
   EXPECT_NE(html.find("1 more would make the page too large"), std::string::npos);
+}
+
+/// A run of 9000 frames with a peak of each kind, two lost frames and a closed loop.
+ReportInput longRun() {
+  ReportInput input = sampleRun(9000);
+  for (ReportFrame& frame : input.frames) {
+    frame.failure.clear();
+    frame.error = 0.005;
+    frame.position = frame.truth;
+  }
+  input.frames[1234].error = 0.5;
+  input.frames[2345].stage_ms[4] = 400.0;
+  input.frames[3456].dynamic_points = 5000;
+  input.frames[4567].boxes = 17;
+  input.frames[5678].static_points = 0;
+  input.frames[6789].failure = "too few matches";
+  input.frames[6790].failure = "too few matches";
+  input.loops = {{input.frames[8017].timestamp, input.frames[33].timestamp, 0.1, 50, ""},
+                 {input.frames[8019].timestamp, input.frames[37].timestamp, 0.1, 50, "clustered"}};
+  return input;
+}
+
+TEST(FramesToShow, OfALongRunPeaksLossesAndLoopsStay) {
+  const ReportInput input = longRun();
+  const std::vector<std::size_t> shown = framesToShow(input);
+  EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end()));
+  EXPECT_LE(shown.size(), kMostFramesShown + 1 + 2);
+  for (const std::size_t frame :
+       {0U, 33U, 1234U, 2345U, 3456U, 4567U, 5678U, 6789U, 8017U, 8999U}) {
+    EXPECT_TRUE(std::binary_search(shown.begin(), shown.end(), frame)) << frame;
+  }
+  for (std::size_t k = 1; k < shown.size(); ++k) {
+    EXPECT_LE(shown[k] - shown[k - 1], 30U) << "no stretch of 9000 / 300 frames is left out";
+  }
+}
+
+TEST(FramesToShow, OfAShortRunAllStay) {
+  EXPECT_EQ(framesToShow(sampleRun(kMostFramesShown)).size(), kMostFramesShown);
+  EXPECT_TRUE(framesToShow(ReportInput{}).empty());
+}
+
+TEST(Report, OfALongRunDoesNotGrowAndSaysWhatItShows) {
+  const ReportInput input = longRun();
+  const std::string html = renderReport(input);
+  EXPECT_LT(html.size(), 1'200'000U);
+  EXPECT_TRUE(mentions(html, {"of 9000 frames: of each stretch", "8998 <small>of 9000</small>",
+                              "<td>all stages</td><td class=\"n\">9000</td>"}));
+  ReportInput twice = input;
+  for (ReportFrame frame : input.frames) {
+    frame.timestamp += 400.0;
+    twice.frames.push_back(frame);
+  }
+  EXPECT_LT(static_cast<double>(renderReport(twice).size()),
+            1.15 * static_cast<double>(html.size()));
+  EXPECT_EQ(renderReport(sampleRun(100)).find("of each stretch"), std::string::npos);
 }
 
 TEST(Report, StageTimesOfAnotherCountAreRefused) {

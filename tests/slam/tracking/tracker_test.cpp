@@ -42,6 +42,51 @@ TEST(Tracker, AFrameWithoutKeyPointsIsLostAndTheNextIsFoundAgain) {
   EXPECT_LT(distanceBetween(found.camera_from_world, jumped), 0.002);
 }
 
+Frame nothing(std::size_t index) {
+  return makeFrame(index, 0.033 * static_cast<double>(index), {}, cv::Mat::zeros(240, 320, CV_32F),
+                   1.2f);
+}
+
+// Half a metre in a thirtieth of a second is more than a camera moves. A wrong place would look so.
+TEST(Tracker, AFrameThatIsFoundFarAwayIsBelievedWhenTheNextIsFoundBesideIt) {
+  const Room room(14);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  tracker.track(nothing(1));
+  const std::size_t points = tracker.map().points().size();
+  const auto at = [&](std::size_t k, double x) {
+    return tracker.track(room.see(k, movedBy(x, 0.0)));
+  };
+  EXPECT_EQ(at(2, 0.5).failure, TrackingFailure::kUnconfirmed);
+  EXPECT_EQ(at(3, -0.5).failure, TrackingFailure::kUnconfirmed) << "not beside the one before";
+  EXPECT_EQ(tracker.map().keyFrames().size(), 1U);
+  EXPECT_EQ(tracker.map().points().size(), points);
+  const TrackingResult found = at(4, -0.48);
+  ASSERT_EQ(found.failure, TrackingFailure::kNone);
+  EXPECT_TRUE(found.relocalized);
+  EXPECT_LT(distanceBetween(found.camera_from_world, movedBy(-0.48, 0.0)), 0.002);
+  EXPECT_STREQ(toString(TrackingFailure::kUnconfirmed), "not confirmed");
+}
+
+TEST(Tracker, AFrameThatIsLostBetweenTwoFindsMakesThemNoPair) {
+  const Room room(15);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  EXPECT_EQ(tracker.track(room.see(1, movedBy(0.5, 0.0))).failure, TrackingFailure::kUnconfirmed);
+  EXPECT_EQ(tracker.track(nothing(2)).failure, TrackingFailure::kTooFewMatches);
+  EXPECT_EQ(tracker.track(room.see(3, movedBy(0.51, 0.0))).failure, TrackingFailure::kUnconfirmed);
+  EXPECT_EQ(tracker.track(room.see(4, movedBy(0.52, 0.0))).failure, TrackingFailure::kNone);
+}
+
+TEST(Tracker, AfterLongNothingTheLastPlaceConfirmsNoMore) {
+  const Room room(16);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  tracker.track(nothing(1));
+  EXPECT_EQ(tracker.track(room.see(40, movedBy(0.0, 0.0))).failure, TrackingFailure::kUnconfirmed);
+  EXPECT_EQ(tracker.track(room.see(41, movedBy(0.0, 0.0))).failure, TrackingFailure::kNone);
+}
+
 TEST(Tracker, CannotStartWithoutDepth) {
   const Room room(5);
   Frame frame = room.see(0, movedBy(0.0, 0.0));
