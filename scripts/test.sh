@@ -61,11 +61,16 @@ if $install; then
   scripts/install_dependencies.sh || finish 1 "dependencies are missing"
 fi
 cmake --preset "$preset" || finish 1 "configuring failed"
-# A label's tests have a target of their own.
-cmake --build --preset "$preset" --parallel "$jobs" ${label:+--target "tests_$label"} || finish 1 "building failed"
+build=(--preset "$preset" --parallel "$jobs")
+run=(--preset "$preset" --parallel "$jobs")
+if [[ -n $label ]]; then
+  build+=(--target "tests_$label") # the label's tests have a target of their own
+  run+=(--label-regex "^$label\$")
+fi
+cmake --build "${build[@]}" || finish 1 "building failed"
 
 rm -f "$results"
-ctest --preset "$preset" --parallel "$jobs" ${label:+--label-regex "^$label\$"} --no-tests=error --output-junit "$results"
+ctest "${run[@]}" --no-tests=error --output-junit "$results"
 status=$?
 [[ -f $results ]] || finish 1 "no test ran"
 total=$(result tests)
