@@ -5,11 +5,12 @@ set -uo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--preset NAME] [--jobs N] [--no-install]
+Usage: ${0##*/} [--preset NAME] [--label NAME] [--jobs N] [--no-install]
 
 Installs what is missing, configures, builds and runs every test. The last line says how it went.
 
   --preset NAME   preset of CMakePresets.json: ci (default), debug, release, asan-ubsan, tsan, bench
+  --label NAME    only the tests with this label, and what they need: threads (code that starts threads)
   --jobs N        compile and test jobs at a time (default: number of processors, $(nproc))
   --no-install    do not look for missing packages
   --help          this text
@@ -23,13 +24,14 @@ usage_error() {
 }
 
 preset=ci
+label=
 jobs=$(nproc)
 install=true
 while (($# > 0)); do
   case "$1" in
-    --preset | --jobs)
+    --preset | --label | --jobs)
       (($# > 1)) || usage_error "$1 needs a value"
-      if [[ $1 == --preset ]]; then preset=$2; else jobs=$2; fi
+      declare "${1#--}=$2"
       shift
       ;;
     --no-install) install=false ;;
@@ -39,13 +41,14 @@ while (($# > 0)); do
   shift
 done
 [[ $jobs =~ ^[1-9][0-9]*$ ]] || usage_error "--jobs is '$jobs'; expected a number above 0"
+[[ -z $label || $label == threads ]] || usage_error "--label is '$label'; expected threads"
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 results=$PWD/build/$preset/test_results.xml
 
 finish() {
-  printf 'hmcdyn tests (preset %s, %d min %d s): %s\n' "$preset" $((SECONDS / 60)) \
-    $((SECONDS % 60)) "$2"
+  printf 'hmcdyn tests (preset %s%s, %d min %d s): %s\n' "$preset" "${label:+, label $label}" \
+    $((SECONDS / 60)) $((SECONDS % 60)) "$2"
   exit "$1"
 }
 
@@ -58,10 +61,16 @@ if $install; then
   scripts/install_dependencies.sh || finish 1 "dependencies are missing"
 fi
 cmake --preset "$preset" || finish 1 "configuring failed"
-cmake --build --preset "$preset" --parallel "$jobs" || finish 1 "building failed"
+build=(--preset "$preset" --parallel "$jobs")
+run=(--preset "$preset" --parallel "$jobs")
+if [[ -n $label ]]; then
+  build+=(--target "tests_$label") # the label's tests have a target of their own
+  run+=(--label-regex "^$label\$")
+fi
+cmake --build "${build[@]}" || finish 1 "building failed"
 
 rm -f "$results"
-ctest --preset "$preset" --parallel "$jobs" --no-tests=error --output-junit "$results"
+ctest "${run[@]}" --no-tests=error --output-junit "$results"
 status=$?
 [[ -f $results ]] || finish 1 "no test ran"
 total=$(result tests)
