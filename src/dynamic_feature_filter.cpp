@@ -239,10 +239,11 @@ FilterStageResult stageOfSelection(const internal::FlowSelection& selection,
   for (const std::size_t i : selection.source) {
     workspace.distance.push_back(distance[i]);
   }
+  workspace.membership = internal::membershipOf(regions, selection.source, selection.points.view(),
+                                                std::move(workspace.membership));
   const FilterStageResult& chosen =
       filterKeyPoints(selection.points.view(), workspace.distance, regions.boxes,
-                      internal::membershipOf(regions, selection.source, selection.points.view()),
-                      options.stage, workspace.stage);
+                      workspace.membership, options.stage, workspace.stage);
 
   const std::size_t n = input.points.size();
   FilterStageResult all;

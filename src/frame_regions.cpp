@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <opencv2/core.hpp>
 
@@ -47,16 +48,16 @@ FrameRegions regionsOf(const DynamicFeatureFilterInput& input) {
 }
 
 BoxMembership membershipOf(const FrameRegions& regions, const std::vector<std::size_t>& source,
-                           const KeyPointsView& points) {
+                           const KeyPointsView& points, BoxMembership reuse) {
   if (!regions.by_mask) {
-    return assignToBoxes(points, regions.boxes);
+    return assignToBoxes(points, regions.boxes, std::move(reuse));
   }
   std::vector<int> region;
   region.reserve(source.size());
   for (const std::size_t i : source) {
     region.push_back(regions.region[i]);
   }
-  return assignToRegions(region, regions.boxes.size());
+  return assignToRegions(region, regions.boxes.size(), std::move(reuse));
 }
 
 std::vector<std::uint8_t> inRegion(const FrameRegions& regions, std::size_t points) {

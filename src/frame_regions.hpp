@@ -24,8 +24,9 @@ struct FrameRegions {
 FrameRegions regionsOf(const DynamicFeatureFilterInput& input);
 
 /// The membership of some of the key points. @param source their numbers. @param points the same.
+/// @param reuse a result whose memory is taken over.
 BoxMembership membershipOf(const FrameRegions& regions, const std::vector<std::size_t>& source,
-                           const KeyPointsView& points);
+                           const KeyPointsView& points, BoxMembership reuse = {});
 
 /// N flags: the point belongs to a region.
 std::vector<std::uint8_t> inRegion(const FrameRegions& regions, std::size_t points);

@@ -142,6 +142,16 @@ CameraPath trianglePath(const Vector3d& corner, double side, double period,
   };
 }
 
+CameraPath roundPath(const Round& r) {
+  return [r](double time) {
+    const double angle = 2.0 * kPi * time / r.period;
+    const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
+    const Vector3d at =
+        r.centre + r.radius * outward + Vector3d(0.0, 0.0, r.bob * std::sin(3.4 * angle));
+    return lookAt(at, at + std::cos(r.down) * outward - Vector3d(0.0, 0.0, std::sin(r.down)));
+  };
+}
+
 CameraPath strollPath(const Vector3d& position, const Vector3d& reach, const Vector3d& target,
                       double period) {
   return [=](double time) {

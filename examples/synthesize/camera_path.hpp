@@ -43,6 +43,17 @@ CameraPath shuttlePath(const Eigen::Isometry3d& pose, const Eigen::Vector3d& way
 CameraPath trianglePath(const Eigen::Vector3d& corner, double side, double period,
                         const Eigen::Vector3d& target);
 
+/// Round and round on a level circle, counter-clockwise from above, looking away from its centre
+/// and `down` below the horizon (rad), with a little up and down on the way (m).
+struct Round {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< (m)
+  double radius = 0.7;                               ///< (m)
+  double period = 14.0;                              ///< Of a round (s).
+  double down = 0.1;                                 ///< (rad)
+  double bob = 0.05;  ///< Amplitude of height, 3.4 swings a round (m).
+};
+CameraPath roundPath(const Round& round);
+
 /// Through a crowd: unrelated slow swings in all directions, the view wandering over `target`.
 CameraPath strollPath(const Eigen::Vector3d& position, const Eigen::Vector3d& reach,
                       const Eigen::Vector3d& target, double period);

@@ -90,6 +90,27 @@ Behaviour paces(double from, double to, double lane, double speed, double pause,
   return b;
 }
 
+Round hallRound() {
+  Round round;
+  round.centre = {0.0, -0.8, 1.45};
+  return round;
+}
+
+/// Along the walls of the hall, around a camera in its middle, one way or the other.
+Behaviour aroundCamera(bool clockwise) {
+  Behaviour b;
+  if (clockwise) {
+    b.start = {-1.9, -2.6};
+    b.actions = {walkTo(-1.9, 0.9, 0.9), walkTo(1.9, 0.9, 0.9), standFor(0.8, kLeft, 0.8),
+                 walkTo(1.9, -2.6, 0.9), walkTo(-1.9, -2.6, 0.9)};
+  } else {
+    b.start = {2.1, 0.6};
+    b.actions = {walkTo(-2.1, 0.6, 1.0), walkTo(-2.1, -2.4, 1.0), walkTo(2.1, -2.4, 1.0),
+                 walkTo(2.1, 0.6, 1.0)};
+  }
+  return b;
+}
+
 void walkingPair(Stage& stage, double lane) {
   stage.person(aroundDesks(lane, 1.05));
   stage.person(leavesChair(2.0));
@@ -316,6 +337,18 @@ void addHardRecipes(std::vector<Recipe>& r) {
                  s.office();
                  s.carried(axesPath(officeView(), 0.24, 5.0));
                }});
+  r.push_back({{"round", "the hall with nobody in it, camera once round in 14 s and on: a loop"},
+               [](Stage& s) {
+                 s.hall();
+                 s.carried(roundPath(hallRound()));
+               }});
+  r.push_back(
+      {{"walking_round", "the same round, two people walk between camera and walls"}, [](Stage& s) {
+         s.hall();
+         s.person(aroundCamera(false));
+         s.person(aroundCamera(true));
+         s.carried(roundPath(hallRound()));
+       }});
 }
 
 std::vector<Recipe> allRecipes() {

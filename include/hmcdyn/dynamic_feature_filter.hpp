@@ -111,6 +111,7 @@ struct DynamicFeatureFilterWorkspace {
   FilterStageWorkspace stage;    ///< Of steps 4 to 7.
   MotionBeliefWorkspace belief;  ///< Of the votes.
   std::vector<float> distance;   ///< Of one earlier frame (px).
+  BoxMembership membership;      ///< Of the points that are followed.
 };
 
 /// Tracks the key points into every earlier frame, estimates the camera's motion, measures each

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,9 @@ const std::vector<std::string> kNames{"walking_xyz",
                                       "still_camera",
                                       "pure_rotation",
                                       "low_texture",
-                                      "empty"};
+                                      "empty",
+                                      "round",
+                                      "walking_round"};
 
 SceneOptions quick(double seconds = 10.0) {
   SceneOptions options;
@@ -153,6 +156,24 @@ TEST(SceneCatalog, CrowdsCoverFortyPercentOfTheImageForSeconds) {
       covered += personShare(renderer.render(0.1 * i)) >= 0.4 ? 1 : 0;
     }
     EXPECT_GE(covered, 20) << name << ": tenths of a second";
+  }
+}
+
+TEST(SceneCatalog, TheRoundComesBackToWhereItBegan) {
+  SceneOptions options = quick();
+  options.paint = false;
+  for (const char* name : {"round", "walking_round"}) {
+    const CameraPath camera = buildScene(name, options).scene.camera;
+    const auto apart = [&](double time) {
+      const Eigen::Isometry3d way = camera(0.0).inverse() * camera(time);
+      return std::pair(way.translation().norm(), Eigen::AngleAxisd(way.linear()).angle());
+    };
+    // A hand of 4 mm and 0.0045 rad an axis, and the height, whose swings do not end with the
+    // round.
+    EXPECT_LT(apart(14.0).first, 0.1);
+    EXPECT_LT(apart(14.0).second, 0.04);
+    EXPECT_GT(apart(7.0).first, 1.3) << "the other side of the circle";
+    EXPECT_GT(apart(7.0).second, 2.8) << "and the other way";
   }
 }
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/detection/detection_thread.hpp"
 
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -14,52 +12,13 @@
 
 #include <gtest/gtest.h>
 
+#include "detection/scripted_detector.hpp"
+
 namespace hmcdyn::slam {
 namespace {
 
-/// Lets a detector go on frame by frame, and tells when it has begun one. No time is involved.
-class Gate {
- public:
-  /// Called by the detector.
-  void pass() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    ++begun_;
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return allowed_ >= begun_; });
-  }
-  void allow(int frames) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    allowed_ += frames;
-    changed_.notify_all();
-  }
-  void awaitBegun(int frames) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return begun_ >= frames; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int begun_ = 0;
-  int allowed_ = 0;
-};
-
-/// Finds one box, at the time stamp; before that it does what the test wants.
-class FakeDetector final : public ObjectDetector {
- public:
-  explicit FakeDetector(std::function<void(double)> before) : before_(std::move(before)) {}
-
-  std::vector<DetectionBox> detect(const cv::Mat& /*bgr*/, double timestamp) override {
-    before_(timestamp);
-    DetectionBox box;
-    box.x_min = static_cast<float>(timestamp);
-    return {box};
-  }
-  std::string name() const override { return "fake"; }
-
- private:
-  std::function<void(double)> before_;
-};
+using test::Gate;
+using test::ScriptedDetector;
 
 DetectionRequest requestOf(std::size_t frame) {
   return {frame, static_cast<double>(frame), cv::Mat(4, 4, CV_8UC3, cv::Scalar(0, 0, 0))};
@@ -75,8 +34,15 @@ void expectFound(const Detection& detection, std::size_t frame) {
 
 class Detecting : public testing::Test {
  protected:
+  /// Finds one box, at the time stamp; before that it does what the test wants.
   static std::unique_ptr<ObjectDetector> fake(std::function<void(double)> before) {
-    return std::make_unique<FakeDetector>(std::move(before));
+    return std::make_unique<ScriptedDetector>(
+        [before = std::move(before)](const cv::Mat& /*bgr*/, double timestamp) {
+          before(timestamp);
+          DetectionBox box;
+          box.x_min = static_cast<float>(timestamp);
+          return std::vector<DetectionBox>{box};
+        });
   }
   Report report() {
     return [this](const std::string& line) { reports_.push_back(line); };
@@ -100,7 +66,7 @@ TEST_F(Detecting, OfflineEveryFrameGetsItsOwnWhileOthersWait) {
   EXPECT_EQ(thread.counts().requested, 20u);
   EXPECT_EQ(thread.counts().detected, 20u);
   EXPECT_EQ(thread.counts().replaced, 0u);
-  EXPECT_EQ(thread.detectorName(), "fake");
+  EXPECT_EQ(thread.detectorName(), "scripted");
 }
 
 TEST_F(Detecting, RunsTheDetectorOnOneOtherThread) {

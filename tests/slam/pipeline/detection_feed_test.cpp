@@ -4,10 +4,7 @@
 #include "slam/pipeline/detection_feed.hpp"
 
 #include <cmath>
-#include <condition_variable>
-#include <functional>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,10 +14,14 @@
 #include <opencv2/imgproc.hpp>
 
 #include "dataset/temporary_folder.hpp"
+#include "detection/scripted_detector.hpp"
 #include "pipeline/toy_sequence.hpp"
 
 namespace hmcdyn::slam {
 namespace {
+
+using test::Gate;
+using test::ScriptedDetector;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
@@ -29,46 +30,6 @@ DetectionBox boxAt(int left) {
   const auto x = static_cast<float>(left);
   return {x, 60.0f, x + 79.0f, 179.0f, kPersonClassId, 0.8f};
 }
-
-/// Says what a function says.
-class ScriptedDetector final : public ObjectDetector {
- public:
-  using Script = std::function<std::vector<DetectionBox>(const cv::Mat& bgr, double timestamp)>;
-  explicit ScriptedDetector(Script script) : script_(std::move(script)) {}
-  std::vector<DetectionBox> detect(const cv::Mat& bgr, double timestamp) override {
-    return script_(bgr, timestamp);
-  }
-  std::string name() const override { return "scripted"; }
-
- private:
-  Script script_;
-};
-
-/// Lets a detector begin a frame, and the test know that it has begun or ended one.
-class Turnstile {
- public:
-  void pass() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    ++begun_;
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return allowed_ >= begun_; });
-  }
-  void allow(int frames) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    allowed_ += frames;
-    changed_.notify_all();
-  }
-  void awaitBegun(int frames) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return begun_ >= frames; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int begun_ = 0;
-  int allowed_ = 0;
-};
 
 class Feed : public testing::Test {
  protected:
@@ -203,15 +164,15 @@ TEST_F(Feed, OfflineBoxesThatNobodyAskedForAreTheCallersMistake) {
 }
 
 TEST_F(Feed, InRealTimeABusyDetectorIsNotWaitedForAndItsLateAnswerIsCarriedToThePresent) {
-  Turnstile turnstile;
+  Gate gate;
   DetectionFeed detections = feed(realtime(), [&](const cv::Mat&, double time) {
-    turnstile.pass();
+    gate.pass();
     return truth(time);
   });
   // Given a detector that is still at frame 0
   detections.ask(frameAt(0));
   EXPECT_TRUE(detections.boxesOf(frameAt(0)).boxes.empty());
-  turnstile.awaitBegun(1);
+  gate.awaitBegun(1);
   // When frames 1 and 2 come, then they have no boxes, and frame 1 is given up for frame 2.
   for (const std::size_t k : {1U, 2U}) {
     detections.ask(frameAt(k));
@@ -221,35 +182,35 @@ TEST_F(Feed, InRealTimeABusyDetectorIsNotWaitedForAndItsLateAnswerIsCarriedToThe
   }
   EXPECT_EQ(detections.counts().replaced, 1U);
   // When it is done with frame 0 and at work on frame 2
-  turnstile.allow(1);
-  turnstile.awaitBegun(2);
+  gate.allow(1);
+  gate.awaitBegun(2);
   // Then frame 3 has the box of frame 0, moved along with the thing.
   const FrameBoxes late = detections.boxesOf(frameAt(3));
   EXPECT_FALSE(late.detected);
   expectBoxAt(late, leftAt(3), kFlow);
-  turnstile.allow(1);
+  gate.allow(1);
 }
 
 TEST_F(Feed, InRealTimeADetectorThatThrowsLeavesTheBoxesThatWereThere) {
-  Turnstile turnstile;
+  Gate gate;
   DetectionFeed detections = feed(realtime(), [&](const cv::Mat&, double time) {
-    turnstile.pass();
+    gate.pass();
     if (indexOf(time) > 0) {
       throw std::runtime_error("the network is gone");
     }
     return truth(time);
   });
-  turnstile.allow(2);
+  gate.allow(2);
   for (const std::size_t k : {0U, 1U, 2U}) {  // each begins when the one before is done
     detections.ask(frameAt(k));
-    turnstile.awaitBegun(static_cast<int>(k) + 1);
+    gate.awaitBegun(static_cast<int>(k) + 1);
   }
   detections.boxesOf(frameAt(0));
   expectBoxAt(detections.boxesOf(frameAt(1)), leftAt(1), kFlow);
   expectBoxAt(detections.boxesOf(frameAt(2)), leftAt(2), kFlow);
   EXPECT_EQ(detections.counts().failed, 1U);
   EXPECT_EQ(reports_.size(), 1U);
-  turnstile.allow(1);
+  gate.allow(1);
 }
 
 TEST_F(Feed, ADetectorSeesTheUndistortedImageAndABoxFileTheRawOne) {
