@@ -23,7 +23,7 @@ class DenseMapper {
   DenseMapper();
 
   /// Hands over a key frame; waits where the thread is far behind. Then rethrows what the thread
-  /// threw at an earlier one, which is not in the map.
+  /// threw at one so far, which is not in the map.
   void add(std::size_t key_frame, const FrameOutcome& outcome);
 
   /// Waits for the thread. Rethrows as add() does: call it until it returns.
