@@ -77,6 +77,7 @@ build() {
 run() {
   local folder=$1 start=$SECONDS
   mkdir -p "$folder/results"
+  rm -f "$folder"/results/*.json # of an earlier run, perhaps of other benchmarks
   for bench in "${benches[@]}" "${front_end[@]}"; do
     printf '== Running %s in %s ...' "$bench" "$folder"
     "$folder/bin/$bench" --benchmark_enable_random_interleaving=true \
