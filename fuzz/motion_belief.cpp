@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <hmcdyn/belief_verdict.hpp>
 #include <hmcdyn/motion_belief.hpp>
 
 #include "fuzz_input.hpp"

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hmcdyn/belief_verdict.hpp>
 #include <hmcdyn/motion_belief.hpp>
 
 #include "invalid_argument.hpp"

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
 
+#include <hmcdyn/belief_verdict.hpp>
 #include <hmcdyn/ego_motion.hpp>
 #include <hmcdyn/filter_stage.hpp>
 #include <hmcdyn/fundamental.hpp>

@@ -19,6 +19,7 @@
 #include <hmcdyn/filter_stage.hpp>
 #include <hmcdyn/surface_depth.hpp>
 #include <hmcdyn/motion_belief.hpp>
+#include <hmcdyn/belief_verdict.hpp>
 #include <hmcdyn/dynamic_feature_filter.hpp>
 #include <hmcdyn/pose_refinement.hpp>
 // clang-format on
