@@ -34,7 +34,6 @@ constexpr int kFrames = 12;
 class MaskedRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    cv::setNumThreads(1);  // as hmcdyn_slam: ThreadSanitizer cannot follow OpenCV's own threads
     folder_ = new hmcdyn::test::TemporaryFolder();
     synthesize::SequenceOptions options;
     options.scene = "crowd";
