@@ -148,7 +148,7 @@ FlowMatches flowOf(const internal::FlowSelection& selection, const EarlierFrame&
   return all;
 }
 
-/// Flags of the chosen points that the memory knows to move, by `flow` to its frame; no flags where
+/// Flags of the key points that the memory knows to move, by `flow` to its frame; no flags where
 /// there is no memory, or no need of it.
 std::vector<std::uint8_t> movingByMemory(const internal::FlowSelection& selection,
                                          const DynamicFeatureFilterInput& input,
@@ -167,34 +167,18 @@ std::vector<std::uint8_t> movingByMemory(const internal::FlowSelection& selectio
   }
   const SurfaceDepths surface =
       surfaceDepths(input.depth, selection.points.u, selection.points.v, options.surface);
-  return rememberedToMove(surface.depth, chosen.u, chosen.v, *input.memory, options.belief,
-                          workspace.belief);
-}
-
-/// Earlier columns of the matches, NaN for those that the memory knows to move. Empty where the
-/// background suffices or too little is left.
-std::vector<float> columnsAtRest(const PointPairsView& pairs,
-                                 const internal::FlowSelection& selection,
-                                 const std::vector<std::uint8_t>& moving_by_memory,
-                                 Span<const DetectionBox> boxes,
-                                 const MotionModelOptions& options) {
-  if (moving_by_memory.empty() || backgroundSuffices(pairs, boxes, options)) {
-    return {};
+  const std::vector<std::uint8_t> remembered = rememberedToMove(
+      surface.depth, chosen.u, chosen.v, *input.memory, options.belief, workspace.belief);
+  std::vector<std::uint8_t> moving(input.points.size(), 0);
+  for (std::size_t k = 0; k < remembered.size(); ++k) {
+    moving[selection.source[k]] = remembered[k];
   }
-  std::vector<float> columns(pairs.earlier_u.begin(), pairs.earlier_u.end());
-  for (std::size_t k = 0; k < selection.source.size(); ++k) {
-    if (moving_by_memory[k] != 0) {
-      columns[selection.source[k]] = kNaN;
-    }
-  }
-  const PointPairsView at_rest{columns, pairs.earlier_v, pairs.current_u, pairs.current_v};
-  return backgroundSuffices(at_rest, {}, options) ? columns : std::vector<float>{};
+  return moving;
 }
 
 /// Steps 2 and 3 against one earlier frame; larger distances go into `distance`.
 EarlierFrameReport compareWith(const EarlierFrame& frame, FlowMatches flow,
-                               const internal::FlowSelection& selection,
-                               const std::vector<std::uint8_t>& moving_by_memory,
+                               const std::vector<std::uint8_t>& moving,
                                const DynamicFeatureFilterInput& input,
                                const DynamicFeatureFilterOptions& options,
                                DynamicFeatureFilterWorkspace& workspace,
@@ -203,15 +187,7 @@ EarlierFrameReport compareWith(const EarlierFrame& frame, FlowMatches flow,
   report.flow = std::move(flow);
   const PointPairsView pairs{report.flow.u, report.flow.v, input.points.u, input.points.v};
   if (options.distance != DistanceKind::kEgoMotion) {
-    const std::vector<float> at_rest =
-        columnsAtRest(pairs, selection, moving_by_memory, input.boxes, options.motion);
-    report.by_memory = !at_rest.empty();
-    report.motion =
-        report.by_memory
-            ? estimateMotionModel({at_rest, pairs.earlier_v, pairs.current_u, pairs.current_v}, {},
-                                  options.motion)
-            : estimateMotionModel(pairs, input.boxes, options.motion);
-    report.motion.background_only = report.motion.background_only && !report.by_memory;
+    report.motion = estimateMotionModel(pairs, input.boxes, moving, options.motion);
     report.used = report.motion.model.kind != TwoViewModelKind::kNone &&
                   report.motion.median_distance <= options.max_median_distance;
     if (report.used) {
@@ -291,7 +267,7 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
   if (distancesWanted(bounded, options)) {
     selection = internal::selectForFlow(bounded.points, bounded.boxes, imageSize(*bounded.pyramid),
                                         budgetOf(options, forms_beliefs));
-    std::vector<std::uint8_t> moving_by_memory;
+    std::vector<std::uint8_t> moving;
     for (std::size_t k = 0; k < bounded.earlier.size(); ++k) {
       const EarlierFrame& frame = bounded.earlier[k];
       const FlowMatches guess =
@@ -299,10 +275,10 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
                  : prolonged(selection, frame, bounded.earlier[k - 1], result.earlier[k - 1].flow);
       FlowMatches flow = flowOf(selection, frame, bounded, options.flow, guess);
       if (k == 0) {  // whose memory it is
-        moving_by_memory = movingByMemory(selection, bounded, flow, options, workspace);
+        moving = movingByMemory(selection, bounded, flow, options, workspace);
       }
-      result.earlier.push_back(compareWith(frame, std::move(flow), selection, moving_by_memory,
-                                           bounded, options, workspace, result.distance));
+      result.earlier.push_back(compareWith(frame, std::move(flow), moving, bounded, options,
+                                           workspace, result.distance));
     }
   }
   if (!forms_beliefs) {

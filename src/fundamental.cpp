@@ -61,19 +61,42 @@ int occupiedCells(const std::vector<Match>& some, const std::vector<Match>& all)
   return static_cast<int>(std::count(occupied.begin(), occupied.end(), true));
 }
 
-/// The matches, and which of them lie outside the boxes.
+/// Whether `some` may speak for the camera in place of `all`.
+bool suffice(const std::vector<Match>& some, const std::vector<Match>& all,
+             const MotionModelOptions& options) {
+  const int least = std::max(options.min_background_matches, options.min_matches);
+  return some.size() >= static_cast<std::size_t>(least) &&
+         occupiedCells(some, all) >= options.min_background_cells;
+}
+
+/// The matches, those outside the boxes, and those not known to move.
 struct SortedMatches {
   std::vector<Match> all;
   std::vector<Match> background;
+  std::vector<Match> not_moving;  ///< Empty where no point is known to move.
 
-  bool backgroundSuffices(const MotionModelOptions& options) const {
-    return background.size() >= static_cast<std::size_t>(std::max(options.min_background_matches,
-                                                                  options.min_matches)) &&
-           occupiedCells(background, all) >= options.min_background_cells;
+  MatchSource choose(const MotionModelOptions& options) const {
+    if (suffice(background, all, options)) {
+      return MatchSource::kBackground;
+    }
+    return suffice(not_moving, all, options) ? MatchSource::kNotMoving : MatchSource::kAll;
+  }
+
+  const std::vector<Match>& of(MatchSource source) const {
+    switch (source) {
+      case MatchSource::kBackground:
+        return background;
+      case MatchSource::kNotMoving:
+        return not_moving;
+      case MatchSource::kAll:
+        break;
+    }
+    return all;
   }
 };
 
-SortedMatches sortMatches(const PointPairsView& pairs, Span<const DetectionBox> boxes) {
+SortedMatches sortMatches(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                          Span<const std::uint8_t> moving) {
   SortedMatches sorted;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Match match{{pairs.earlier_u[i], pairs.earlier_v[i]},
@@ -87,6 +110,9 @@ SortedMatches sortMatches(const PointPairsView& pairs, Span<const DetectionBox> 
     });
     if (!in_box) {
       sorted.background.push_back(match);
+    }
+    if (!moving.empty() && moving[i] == 0) {
+      sorted.not_moving.push_back(match);
     }
   }
   return sorted;
@@ -203,17 +229,29 @@ bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> bo
                         const MotionModelOptions& options) {
   checkOptions(options);
   checkPointPairs(pairs);
-  return sortMatches(pairs, boxes).backgroundSuffices(options);
+  const SortedMatches sorted = sortMatches(pairs, boxes, {});
+  return suffice(sorted.background, sorted.all, options);
 }
 
 MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
                                         const MotionModelOptions& options) {
+  return estimateMotionModel(pairs, boxes, {}, options);
+}
+
+MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                        Span<const std::uint8_t> moving,
+                                        const MotionModelOptions& options) {
   checkOptions(options);
   checkPointPairs(pairs);
+  if (!moving.empty() && moving.size() != pairs.size()) {
+    throw std::invalid_argument("moving has " + std::to_string(moving.size()) +
+                                " flags; expected 0 or one for each of the " +
+                                std::to_string(pairs.size()) + " pairs");
+  }
   MotionModelEstimate estimate;
-  const SortedMatches sorted = sortMatches(pairs, boxes);
-  estimate.background_only = sorted.backgroundSuffices(options);
-  const std::vector<Match>& matches = estimate.background_only ? sorted.background : sorted.all;
+  const SortedMatches sorted = sortMatches(pairs, boxes, moving);
+  estimate.source = sorted.choose(options);
+  const std::vector<Match>& matches = sorted.of(estimate.source);
   estimate.matches = matches.size();
   if (matches.size() < static_cast<std::size_t>(options.min_matches)) {
     return estimate;

@@ -170,14 +170,13 @@ TEST(DynamicFeatureFilterBelief, ACrowdThatFillsTheImageIsNotTakenForTheWorld) {
     return dynamic;
   };
   const DynamicFeatureFilterResult remembering = clip.run(&memory);
-  EXPECT_TRUE(remembering.earlier.at(0).by_memory);
-  EXPECT_FALSE(remembering.earlier.at(0).motion.background_only);
+  EXPECT_EQ(remembering.earlier.at(0).motion.source, MatchSource::kNotMoving);
   EXPECT_LE(remembering.earlier.at(0).motion.matches, on_walls);
   EXPECT_EQ(dynamicOf(remembering, true), on_thing);
   EXPECT_EQ(dynamicOf(remembering, false), 0U);
   // Without a memory the many are the world, and the walls move.
   const DynamicFeatureFilterResult forgetful = clip.run();
-  EXPECT_FALSE(forgetful.earlier.at(0).by_memory);
+  EXPECT_EQ(forgetful.earlier.at(0).motion.source, MatchSource::kAll);
   EXPECT_LT(dynamicOf(forgetful, true), on_thing / 2);
 }
 
@@ -185,8 +184,7 @@ TEST(DynamicFeatureFilterBelief, EnoughBackgroundNeedsNoMemory) {
   const Clip clip({1});
   const MotionBelief memory = clip.run().belief;
   const DynamicFeatureFilterResult result = clip.run(&memory);
-  EXPECT_FALSE(result.earlier.at(0).by_memory);
-  EXPECT_TRUE(result.earlier.at(0).motion.background_only);
+  EXPECT_EQ(result.earlier.at(0).motion.source, MatchSource::kBackground);
 }
 
 TEST(DynamicFeatureFilterBelief, OnlyTheBudgetIsFollowedAndTheOthersAreJudged) {

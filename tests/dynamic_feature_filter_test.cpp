@@ -120,7 +120,7 @@ TEST(DynamicFeatureFilter, AMovingThingGoesAndTheWallBesideItStays) {
   // Then the camera's motion is found from the walls
   ASSERT_EQ(result.earlier.size(), 1U);
   EXPECT_TRUE(result.earlier[0].used);
-  EXPECT_TRUE(result.earlier[0].motion.background_only);
+  EXPECT_EQ(result.earlier[0].motion.source, MatchSource::kBackground);
   EXPECT_EQ(result.earlier[0].motion.verdict, FundamentalVerdict::kDefined);
   EXPECT_LT(result.earlier[0].motion.median_distance, 0.1f);
 

@@ -120,7 +120,7 @@ TEST_P(MotionModelSeeds, AStillCameraMeasuresDisplacement) {
   EXPECT_EQ(found.verdict, FundamentalVerdict::kCameraStill);
   EXPECT_EQ(found.model.kind, TwoViewModelKind::kIdentity);
   EXPECT_FALSE(found.fundamentalDefined());
-  EXPECT_TRUE(found.background_only);
+  EXPECT_EQ(found.source, MatchSource::kBackground);
 
   const std::vector<float> distance = modelDistances(found.model, scene.pairs());
   for (std::size_t i = 0; i < scene.size(); ++i) {
@@ -137,7 +137,7 @@ void expectHomography(const TwoViewScene& scene, TwoViewScene exact) {
   ASSERT_EQ(found.verdict, FundamentalVerdict::kIllConditioned)
       << "conditioning " << found.conditioning;
   ASSERT_EQ(found.model.kind, TwoViewModelKind::kHomography);
-  EXPECT_TRUE(found.background_only);
+  EXPECT_EQ(found.source, MatchSource::kBackground);
   EXPECT_LT(found.conditioning, 2.0f);
   // Noise of both frames in both directions: Rayleigh with deviation 0.212, median 0.25.
   EXPECT_NEAR(found.median_distance, 0.25, 0.06);
@@ -193,7 +193,7 @@ TEST_P(MotionModelSeeds, MoversInBoxesAreLeftOut) {
 
   // Then
   ASSERT_EQ(found.verdict, FundamentalVerdict::kDefined);
-  EXPECT_TRUE(found.background_only);
+  EXPECT_EQ(found.source, MatchSource::kBackground);
   EXPECT_EQ(found.matches, scene.size() - movers);
   const std::vector<float> distance = modelDistances(found.model, scene.pairs());
   std::vector<float> of_movers, of_background;
@@ -234,32 +234,6 @@ TEST(MotionModel, RotationsHardlyEverPassForTranslations) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MotionModelSeeds, ::testing::Range(1U, 9U));
-
-TEST(MotionModel, ABackgroundThatIsTooSmallGivesAllPoints) {
-  const TwoViewScene scene =
-      makeScene(motionOf({0.2, -0.5, 0.1}, {0.1, 0.02, 0.03}), noisy(1, 200));
-  // Given a box over nearly everything: few points are left, or in few cells.
-  const DetectionBox nearly_all{60.0f, -20.0f, 700.0f, 500.0f, kPersonClassId, 1.0f};
-  const MotionModelEstimate few = estimate(scene, {nearly_all});
-  EXPECT_FALSE(few.background_only);
-  EXPECT_EQ(few.matches, 200U);
-
-  MotionModelOptions options = fixedOptions();
-  options.min_background_matches = 8;
-  EXPECT_TRUE(estimate(scene, {nearly_all}, options).matches < 200U ||
-              !estimate(scene, {nearly_all}, options).background_only);
-  options.min_background_cells = 8;  // a strip at the left has four
-  EXPECT_FALSE(estimate(scene, {nearly_all}, options).background_only);
-
-  EXPECT_FALSE(backgroundSuffices(scene.pairs(), std::vector<DetectionBox>{nearly_all}, options));
-
-  // Given boxes that hold nothing.
-  const DetectionBox inverted{600.0f, 400.0f, 10.0f, 10.0f, kPersonClassId, 1.0f};
-  EXPECT_TRUE(backgroundSuffices(scene.pairs(), std::vector<DetectionBox>{inverted}, options));
-  const MotionModelEstimate all = estimate(scene, {inverted});
-  EXPECT_TRUE(all.background_only);
-  EXPECT_EQ(all.matches, 200U);
-}
 
 TEST(MotionModel, TooFewMatchesGiveNone) {
   const Eigen::Isometry3d motion = motionOf({0.0, 0.0, 0.0}, {0.1, 0.0, 0.0});

@@ -94,9 +94,6 @@ struct EarlierFrameReport {
   FlowMatches flow;            ///< Where the N key points were.
   MotionModelEstimate motion;  ///< The model, and whether F was defined.
   bool used = false;           ///< Its distances count.
-  /// The boxes left too little background, so the model is of what the memory does not know to
-  /// move.
-  bool by_memory = false;
 };
 
 /// What the filter found out about a frame of N key points.

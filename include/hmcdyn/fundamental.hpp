@@ -16,7 +16,8 @@ struct MotionModelOptions {
 
   /// The model is estimated from the matches outside every box when there are this many of them ...
   int min_background_matches = 60;
-  /// ... and they lie in this many cells of a 4-by-4 grid over all matches; else from all matches.
+  /// ... and they lie in this many cells of a 4-by-4 grid over all matches; else, under the same
+  /// two conditions, from those that are not known to move; else from all matches.
   int min_background_cells = 5;
 
   float inlier_threshold = 0.5f;  ///< Distance of an inlier (px).
@@ -48,14 +49,21 @@ enum class FundamentalVerdict : std::uint8_t {
 /// "defined", "too few matches", "camera still", "ill-conditioned" or "no consensus".
 const char* toString(FundamentalVerdict verdict) noexcept;
 
+/// The matches that spoke for the camera's motion.
+enum class MatchSource : std::uint8_t {
+  kAll,         ///< Nothing else was enough.
+  kBackground,  ///< Those outside every box.
+  kNotMoving,   ///< Those not known to move: the boxes left too little background.
+};
+
 /// The motion model of a frame pair, and what it was made of.
 struct MotionModelEstimate {
   TwoViewModel model;  ///< What to measure distances with; kNone only where nothing fits.
   /// Whether F is defined, and why not.
   FundamentalVerdict verdict = FundamentalVerdict::kTooFewMatches;
-  bool background_only = false;  ///< Estimated from the matches outside the boxes.
-  std::size_t matches = 0;       ///< Matches it was estimated from.
-  std::size_t inliers = 0;       ///< Those within inlier_threshold of the model.
+  MatchSource source = MatchSource::kAll;  ///< What it was estimated from ...
+  std::size_t matches = 0;                 ///< ... and how many these are.
+  std::size_t inliers = 0;                 ///< Those within inlier_threshold of the model.
   float median_distance = kNaN;  ///< Median distance of these matches (px): the noise of the model.
   float conditioning = 0.0f;     ///< Ratio that min_conditioning refers to; 0 = not computed.
 
@@ -80,5 +88,14 @@ bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> bo
 /// @throws std::invalid_argument when sizes differ or an option is out of range.
 MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
                                         const MotionModelOptions& options = {});
+
+/// The same, where earlier frames have shown that some of the points move: these are left out where
+/// the boxes leave too little, so that a crowd that fills the image is not taken for the world.
+///
+/// @param moving N flags, 0 = not known to move; empty = no point is known to move.
+/// @throws std::invalid_argument as above, and when `moving` has another size.
+MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                        Span<const std::uint8_t> moving,
+                                        const MotionModelOptions& options);
 
 }  // namespace hmcdyn

@@ -51,7 +51,7 @@ void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
   }
   for (const EarlierFrameReport& report : filtered.earlier) {
     ++models[hmcdyn::toString(report.motion.model.kind)];
-    models_by_memory += report.by_memory ? 1 : 0;
+    models_by_memory += report.motion.source == MatchSource::kNotMoving ? 1 : 0;
     ++fundamental[hmcdyn::toString(report.motion.verdict)];
   }
 }

@@ -31,7 +31,7 @@ struct RunCounts {
   std::size_t key_points = 0;
   std::map<std::string, std::size_t> labels;       ///< Key points by verdict.
   std::map<std::string, std::size_t> models;       ///< Frame pairs by motion model.
-  std::size_t models_by_memory = 0;                ///< Pairs without background, see by_memory.
+  std::size_t models_by_memory = 0;                ///< Pairs without background, see MatchSource.
   std::map<std::string, std::size_t> fundamental;  ///< Frame pairs by verdict on F.
   std::map<std::string, std::size_t> failures;     ///< Frames without a pose, by reason.
   std::vector<double> lost;                        ///< Their time stamps (s), the first 1000.
