@@ -51,6 +51,7 @@ Options anyOptions(FuzzedDataProvider& data) {
     options.belief.memory_decay = anyFloat(data, 0.0f, 1.0f);
     options.belief.weight_cap = anyFloat(data, 0.1f, 30.0f);
     options.belief.dynamic_belief = anyFloat(data, 0.0f, 1.0f);
+    options.belief.certain_weight = anyFloat(data, 0.0f, 1.0f);
     options.verdict.dragged_weight = anyFloat(data, 0.0f, 1.0f);
   }
   return options;

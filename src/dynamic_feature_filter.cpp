@@ -148,13 +148,14 @@ FlowMatches flowOf(const internal::FlowSelection& selection, const EarlierFrame&
   return all;
 }
 
-/// Flags of the key points that the memory knows to move, by `flow` to its frame; no flags where
-/// there is no memory, or no need of it.
-std::vector<std::uint8_t> movingByMemory(const internal::FlowSelection& selection,
-                                         const DynamicFeatureFilterInput& input,
-                                         const FlowMatches& flow,
-                                         const DynamicFeatureFilterOptions& options,
-                                         DynamicFeatureFilterWorkspace& workspace) {
+/// What the memory knows of the key points, by `flow` to its frame. Outside the regions they are at
+/// rest unless it knows better. Empty where there is no memory, or no need of it.
+std::vector<KnownMotion> knownMotionOf(const internal::FlowSelection& selection,
+                                       Span<const std::uint8_t> in_region,
+                                       const DynamicFeatureFilterInput& input,
+                                       const FlowMatches& flow,
+                                       const DynamicFeatureFilterOptions& options,
+                                       DynamicFeatureFilterWorkspace& workspace) {
   const PointPairsView pairs{flow.u, flow.v, input.points.u, input.points.v};
   if (input.memory == nullptr || !formsBeliefs(input, options) ||
       backgroundSuffices(pairs, input.boxes, options.motion)) {
@@ -167,18 +168,20 @@ std::vector<std::uint8_t> movingByMemory(const internal::FlowSelection& selectio
   }
   const SurfaceDepths surface =
       surfaceDepths(input.depth, selection.points.u, selection.points.v, options.surface);
-  const std::vector<std::uint8_t> remembered = rememberedToMove(
+  const std::vector<KnownMotion> remembered = knownMotion(
       surface.depth, chosen.u, chosen.v, *input.memory, options.belief, workspace.belief);
-  std::vector<std::uint8_t> moving(input.points.size(), 0);
+  std::vector<KnownMotion> known(input.points.size(), KnownMotion::kUnknown);
   for (std::size_t k = 0; k < remembered.size(); ++k) {
-    moving[selection.source[k]] = remembered[k];
+    const std::size_t i = selection.source[k];
+    const bool background = remembered[k] == KnownMotion::kUnknown && in_region[i] == 0;
+    known[i] = background ? KnownMotion::kAtRest : remembered[k];
   }
-  return moving;
+  return known;
 }
 
 /// Steps 2 and 3 against one earlier frame; larger distances go into `distance`.
 EarlierFrameReport compareWith(const EarlierFrame& frame, FlowMatches flow,
-                               const std::vector<std::uint8_t>& moving,
+                               const std::vector<KnownMotion>& known,
                                const DynamicFeatureFilterInput& input,
                                const DynamicFeatureFilterOptions& options,
                                DynamicFeatureFilterWorkspace& workspace,
@@ -187,7 +190,7 @@ EarlierFrameReport compareWith(const EarlierFrame& frame, FlowMatches flow,
   report.flow = std::move(flow);
   const PointPairsView pairs{report.flow.u, report.flow.v, input.points.u, input.points.v};
   if (options.distance != DistanceKind::kEgoMotion) {
-    report.motion = estimateMotionModel(pairs, input.boxes, moving, options.motion);
+    report.motion = estimateMotionModel(pairs, input.boxes, known, options.motion);
     report.used = report.motion.model.kind != TwoViewModelKind::kNone &&
                   report.motion.median_distance <= options.max_median_distance;
     if (report.used) {
@@ -261,13 +264,14 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
   DynamicFeatureFilterInput bounded = input;
   bounded.boxes = regions.boxes;  // of a mask: where to look for motion, not what belongs to it
   const bool forms_beliefs = formsBeliefs(bounded, options);
+  const std::vector<std::uint8_t> in_region = internal::inRegion(regions, bounded.points.size());
   DynamicFeatureFilterResult result;
   result.distance.assign(bounded.points.size(), kNaN);
   internal::FlowSelection selection;
   if (distancesWanted(bounded, options)) {
     selection = internal::selectForFlow(bounded.points, bounded.boxes, imageSize(*bounded.pyramid),
                                         budgetOf(options, forms_beliefs));
-    std::vector<std::uint8_t> moving;
+    std::vector<KnownMotion> known;
     for (std::size_t k = 0; k < bounded.earlier.size(); ++k) {
       const EarlierFrame& frame = bounded.earlier[k];
       const FlowMatches guess =
@@ -275,10 +279,10 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
                  : prolonged(selection, frame, bounded.earlier[k - 1], result.earlier[k - 1].flow);
       FlowMatches flow = flowOf(selection, frame, bounded, options.flow, guess);
       if (k == 0) {  // whose memory it is
-        moving = movingByMemory(selection, bounded, flow, options, workspace);
+        known = knownMotionOf(selection, in_region, bounded, flow, options, workspace);
       }
-      result.earlier.push_back(compareWith(frame, std::move(flow), moving, bounded, options,
-                                           workspace, result.distance));
+      result.earlier.push_back(
+          compareWith(frame, std::move(flow), known, bounded, options, workspace, result.distance));
     }
   }
   if (!forms_beliefs) {
@@ -287,8 +291,7 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
     return result;
   }
   result.stage = stageOfSelection(selection, regions, bounded, options, result.distance, workspace);
-  return judgeByBelief(std::move(result), bounded,
-                       internal::inRegion(regions, bounded.points.size()), options, workspace);
+  return judgeByBelief(std::move(result), bounded, in_region, options, workspace);
 }
 
 DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,

@@ -69,23 +69,29 @@ bool suffice(const std::vector<Match>& some, const std::vector<Match>& all,
          occupiedCells(some, all) >= options.min_background_cells;
 }
 
-/// The matches, those outside the boxes, and those not known to move.
+/// The matches, those outside the boxes, and what is known of them.
 struct SortedMatches {
   std::vector<Match> all;
   std::vector<Match> background;
-  std::vector<Match> not_moving;  ///< Empty where no point is known to move.
+  std::vector<Match> at_rest;
+  std::vector<Match> not_moving;  ///< Those at rest and the unknown.
 
   MatchSource choose(const MotionModelOptions& options) const {
-    if (suffice(background, all, options)) {
-      return MatchSource::kBackground;
+    for (const MatchSource source :
+         {MatchSource::kBackground, MatchSource::kAtRest, MatchSource::kNotMoving}) {
+      if (suffice(of(source), all, options)) {
+        return source;
+      }
     }
-    return suffice(not_moving, all, options) ? MatchSource::kNotMoving : MatchSource::kAll;
+    return MatchSource::kAll;
   }
 
   const std::vector<Match>& of(MatchSource source) const {
     switch (source) {
       case MatchSource::kBackground:
         return background;
+      case MatchSource::kAtRest:
+        return at_rest;
       case MatchSource::kNotMoving:
         return not_moving;
       case MatchSource::kAll:
@@ -96,7 +102,7 @@ struct SortedMatches {
 };
 
 SortedMatches sortMatches(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                          Span<const std::uint8_t> moving) {
+                          Span<const KnownMotion> known) {
   SortedMatches sorted;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Match match{{pairs.earlier_u[i], pairs.earlier_v[i]},
@@ -111,7 +117,10 @@ SortedMatches sortMatches(const PointPairsView& pairs, Span<const DetectionBox> 
     if (!in_box) {
       sorted.background.push_back(match);
     }
-    if (!moving.empty() && moving[i] == 0) {
+    if (!known.empty() && known[i] == KnownMotion::kAtRest) {
+      sorted.at_rest.push_back(match);
+    }
+    if (!known.empty() && known[i] != KnownMotion::kMoving) {
       sorted.not_moving.push_back(match);
     }
   }
@@ -239,17 +248,17 @@ MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const 
 }
 
 MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                                        Span<const std::uint8_t> moving,
+                                        Span<const KnownMotion> known,
                                         const MotionModelOptions& options) {
   checkOptions(options);
   checkPointPairs(pairs);
-  if (!moving.empty() && moving.size() != pairs.size()) {
-    throw std::invalid_argument("moving has " + std::to_string(moving.size()) +
-                                " flags; expected 0 or one for each of the " +
+  if (!known.empty() && known.size() != pairs.size()) {
+    throw std::invalid_argument("estimateMotionModel: known has " + std::to_string(known.size()) +
+                                " elements; expected none, or one for each of the " +
                                 std::to_string(pairs.size()) + " pairs");
   }
   MotionModelEstimate estimate;
-  const SortedMatches sorted = sortMatches(pairs, boxes, moving);
+  const SortedMatches sorted = sortMatches(pairs, boxes, known);
   estimate.source = sorted.choose(options);
   const std::vector<Match>& matches = sorted.of(estimate.source);
   estimate.matches = matches.size();

@@ -170,7 +170,7 @@ TEST(DynamicFeatureFilterBelief, ACrowdThatFillsTheImageIsNotTakenForTheWorld) {
     return dynamic;
   };
   const DynamicFeatureFilterResult remembering = clip.run(&memory);
-  EXPECT_EQ(remembering.earlier.at(0).motion.source, MatchSource::kNotMoving);
+  EXPECT_EQ(remembering.earlier.at(0).motion.source, MatchSource::kAtRest);
   EXPECT_LE(remembering.earlier.at(0).motion.matches, on_walls);
   EXPECT_EQ(dynamicOf(remembering, true), on_thing);
   EXPECT_EQ(dynamicOf(remembering, false), 0U);

@@ -42,28 +42,35 @@ const std::vector<DetectionBox> kWholeImage{{-50.0f, -50.0f, 800.0f, 600.0f, kPe
 /// Two of three points rise together by 8 px, as a crowd does that walks.
 struct Crowd {
   TwoViewScene scene;
-  std::vector<std::uint8_t> moving;
+  std::vector<KnownMotion> known;
   std::size_t at_rest = 0;
 
-  explicit Crowd(std::uint32_t seed) : scene(sceneOf(300, seed)), moving(scene.size(), 0) {
+  explicit Crowd(std::uint32_t seed) : scene(sceneOf(300, seed)) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      moving[i] = i % 3 != 0 ? 1 : 0;
-      at_rest += moving[i] == 0 ? 1 : 0;
-      if (moving[i] != 0) {
+      known.push_back(i % 3 != 0 ? KnownMotion::kMoving : KnownMotion::kAtRest);
+      at_rest += i % 3 != 0 ? 0 : 1;
+      if (i % 3 != 0) {
         scene.moveCurrent(i, {0.0, -8.0});
       }
     }
   }
 
-  /// The share of the points at rest, or of the others, within 1 px of their lines.
-  double shareOnLines(const TwoViewModel& model, bool of_moving) const {
+  /// The share of those points within 1 px of their lines.
+  double shareOnLines(const TwoViewModel& model, KnownMotion of) const {
     const std::vector<float> distance = modelDistances(model, scene.pairs());
     std::size_t near = 0;
+    std::size_t all = 0;
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      near += (moving[i] != 0) == of_moving && distance[i] < 1.0f ? 1 : 0;
+      if (known[i] == of) {
+        ++all;
+        near += distance[i] < 1.0f ? 1 : 0;
+      }
     }
-    const std::size_t of = of_moving ? scene.size() - at_rest : at_rest;
-    return static_cast<double>(near) / static_cast<double>(of);
+    return static_cast<double>(near) / static_cast<double>(all);
+  }
+  MotionModelEstimate estimate(const std::vector<KnownMotion>& knowing,
+                               const MotionModelOptions& options = fixedOptions()) const {
+    return estimateMotionModel(scene.pairs(), kWholeImage, knowing, options);
   }
 };
 
@@ -108,28 +115,53 @@ TEST(MatchSource, ABoxThatHoldsNothingLeavesAllOfTheBackground) {
 TEST(MatchSource, ACrowdThatIsKnownToMoveIsNotTakenForTheWorld) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const Crowd crowd(seed);
-    // Without flags the many are the world ...
-    const MotionModelEstimate fooled =
-        estimateMotionModel(crowd.scene.pairs(), kWholeImage, fixedOptions());
+    // Where nothing is known the many are the world ...
+    const MotionModelEstimate fooled = crowd.estimate({});
     EXPECT_EQ(fooled.source, MatchSource::kAll);
     EXPECT_EQ(fooled.matches, 300U);
-    EXPECT_LT(crowd.shareOnLines(fooled.model, false), 0.5) << "seed " << seed;
+    EXPECT_LT(crowd.shareOnLines(fooled.model, KnownMotion::kAtRest), 0.5) << "seed " << seed;
 
-    // ... with them they are not.
-    const MotionModelEstimate found =
-        estimateMotionModel(crowd.scene.pairs(), kWholeImage, crowd.moving, fixedOptions());
-    EXPECT_EQ(found.source, MatchSource::kNotMoving);
+    // ... else they are not.
+    const MotionModelEstimate found = crowd.estimate(crowd.known);
+    EXPECT_EQ(found.source, MatchSource::kAtRest);
     EXPECT_EQ(found.matches, crowd.at_rest);
     EXPECT_EQ(found.verdict, FundamentalVerdict::kDefined);
-    EXPECT_GT(crowd.shareOnLines(found.model, false), 0.95) << "seed " << seed;
-    EXPECT_LT(crowd.shareOnLines(found.model, true), 0.1) << "seed " << seed;
+    EXPECT_GT(crowd.shareOnLines(found.model, KnownMotion::kAtRest), 0.95) << "seed " << seed;
+    EXPECT_LT(crowd.shareOnLines(found.model, KnownMotion::kMoving), 0.1) << "seed " << seed;
   }
 }
 
-TEST(MatchSource, EnoughBackgroundNeedsNoFlags) {
+TEST(MatchSource, WhatHasJustAppearedDoesNotSpeakWhileOthersDo) {
+  // Given a crowd of which half has just stepped out from behind something
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    Crowd crowd(seed);
+    std::vector<KnownMotion> known = crowd.known;
+    std::size_t unknown = 0;
+    for (std::size_t i = 0; i < known.size(); i += 2) {
+      if (known[i] == KnownMotion::kMoving) {
+        known[i] = KnownMotion::kUnknown;
+        ++unknown;
+      }
+    }
+    ASSERT_EQ(unknown, 100U);
+    const MotionModelEstimate found = crowd.estimate(known);
+    EXPECT_EQ(found.source, MatchSource::kAtRest);
+    EXPECT_EQ(found.matches, crowd.at_rest);
+    EXPECT_LT(crowd.shareOnLines(found.model, KnownMotion::kMoving), 0.1) << "seed " << seed;
+
+    // Where too little is known to be at rest, the unknown speak, too.
+    MotionModelOptions options = fixedOptions();
+    options.min_background_matches = 101;
+    const MotionModelEstimate short_of = crowd.estimate(known, options);
+    EXPECT_EQ(short_of.source, MatchSource::kNotMoving);
+    EXPECT_EQ(short_of.matches, crowd.at_rest + unknown);
+  }
+}
+
+TEST(MatchSource, EnoughBackgroundNeedsNoMemory) {
   const Crowd crowd(1);
   const MotionModelEstimate with =
-      estimateMotionModel(crowd.scene.pairs(), {}, crowd.moving, fixedOptions());
+      estimateMotionModel(crowd.scene.pairs(), {}, crowd.known, fixedOptions());
   const MotionModelEstimate without = estimateMotionModel(crowd.scene.pairs(), {}, fixedOptions());
   EXPECT_EQ(with.source, MatchSource::kBackground);
   EXPECT_EQ(with.model.matrix, without.model.matrix);
@@ -141,32 +173,29 @@ TEST(MatchSource, TooLittleAtRestGivesAllPoints) {
   // Too few: 100 of 300 are at rest.
   ASSERT_EQ(crowd.at_rest, 100U);
   options.min_background_matches = 101;
-  EXPECT_EQ(estimateMotionModel(crowd.scene.pairs(), kWholeImage, crowd.moving, options).source,
-            MatchSource::kAll);
+  EXPECT_EQ(crowd.estimate(crowd.known, options).source, MatchSource::kAll);
   options.min_background_matches = 100;
-  EXPECT_EQ(estimateMotionModel(crowd.scene.pairs(), kWholeImage, crowd.moving, options).source,
-            MatchSource::kNotMoving);
+  EXPECT_EQ(crowd.estimate(crowd.known, options).source, MatchSource::kAtRest);
 
   // In too few cells: only what lies in the upper left quarter is at rest, which is four cells.
-  const TwoViewScene& scene = crowd.scene;
-  std::vector<std::uint8_t> moving(scene.size(), 0);
-  for (std::size_t i = 0; i < scene.size(); ++i) {
-    moving[i] = scene.current_u[i] > 300.0f || scene.current_v[i] > 220.0f ? 1 : 0;
+  std::vector<KnownMotion> quarter;
+  for (std::size_t i = 0; i < crowd.scene.size(); ++i) {
+    const bool in = crowd.scene.current_u[i] < 300.0f && crowd.scene.current_v[i] < 220.0f;
+    quarter.push_back(in ? KnownMotion::kAtRest : KnownMotion::kMoving);
   }
   options.min_background_matches = 12;
-  EXPECT_EQ(estimateMotionModel(scene.pairs(), kWholeImage, moving, options).source,
-            MatchSource::kAll);
+  EXPECT_EQ(crowd.estimate(quarter, options).source, MatchSource::kAll);
   options.min_background_cells = 4;
-  EXPECT_EQ(estimateMotionModel(scene.pairs(), kWholeImage, moving, options).source,
-            MatchSource::kNotMoving);
+  EXPECT_EQ(crowd.estimate(quarter, options).source, MatchSource::kAtRest);
 }
 
-TEST(MatchSource, FlagsOfAnotherSizeAreRefused) {
+TEST(MatchSource, KnowledgeOfAnotherSizeIsRefused) {
   const TwoViewScene scene = sceneOf(20);
-  const std::vector<std::uint8_t> flags(19, 0);
+  const std::vector<KnownMotion> known(19, KnownMotion::kAtRest);
   EXPECT_EQ(test::invalidArgumentOf(
-                [&] { estimateMotionModel(scene.pairs(), {}, flags, fixedOptions()); }),
-            "moving has 19 flags; expected 0 or one for each of the 20 pairs");
+                [&] { estimateMotionModel(scene.pairs(), {}, known, fixedOptions()); }),
+            "estimateMotionModel: known has 19 elements; expected none, or one for each of the 20 "
+            "pairs");
 }
 
 }  // namespace

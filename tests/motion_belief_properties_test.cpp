@@ -185,6 +185,8 @@ TEST(MotionBelief, OptionsOutOfRangeAreNamed) {
             "MotionBeliefOptions::memory_decay is 1.100000; expected a value in [0, 1]");
   EXPECT_EQ(message([](Options& o) { o.dynamic_belief = -1.0f; }),
             "MotionBeliefOptions::dynamic_belief is -1.000000; expected a value in [0, 1]");
+  EXPECT_EQ(message([](Options& o) { o.certain_weight = 1.5f; }),
+            "MotionBeliefOptions::certain_weight is 1.500000; expected a value in [0, 1]");
   EXPECT_EQ(message([](Options&) {}), "nothing thrown");
 }
 

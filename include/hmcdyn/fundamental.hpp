@@ -17,7 +17,8 @@ struct MotionModelOptions {
   /// The model is estimated from the matches outside every box when there are this many of them ...
   int min_background_matches = 60;
   /// ... and they lie in this many cells of a 4-by-4 grid over all matches; else, under the same
-  /// two conditions, from those that are not known to move; else from all matches.
+  /// two conditions, from those that are known to be at rest; else from those that are not known to
+  /// move; else from all matches.
   int min_background_cells = 5;
 
   float inlier_threshold = 0.5f;  ///< Distance of an inlier (px).
@@ -53,7 +54,8 @@ const char* toString(FundamentalVerdict verdict) noexcept;
 enum class MatchSource : std::uint8_t {
   kAll,         ///< Nothing else was enough.
   kBackground,  ///< Those outside every box.
-  kNotMoving,   ///< Those not known to move: the boxes left too little background.
+  kAtRest,      ///< Those known to be at rest: the boxes left too little background.
+  kNotMoving,   ///< Those not known to move: too few were known to be at rest.
 };
 
 /// The motion model of a frame pair, and what it was made of.
@@ -89,13 +91,13 @@ bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> bo
 MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
                                         const MotionModelOptions& options = {});
 
-/// The same, where earlier frames have shown that some of the points move: these are left out where
-/// the boxes leave too little, so that a crowd that fills the image is not taken for the world.
+/// The same, where earlier frames have shown what moves and what is at rest. That decides where the
+/// boxes leave too little, so that a crowd that fills the image is not taken for the world.
 ///
-/// @param moving N flags, 0 = not known to move; empty = no point is known to move.
-/// @throws std::invalid_argument as above, and when `moving` has another size.
+/// @param known of the N points; empty = nothing is known.
+/// @throws std::invalid_argument as above, and when `known` has another size.
 MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                                        Span<const std::uint8_t> moving,
+                                        Span<const KnownMotion> known,
                                         const MotionModelOptions& options);
 
 }  // namespace hmcdyn

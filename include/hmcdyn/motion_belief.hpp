@@ -45,6 +45,8 @@ struct MotionBeliefOptions {
   float memory_decay = 0.9f;    ///< What a frame leaves of the memory's weight, 0..1.
   float weight_cap = 20.0f;     ///< So many full votes make a belief certain.
   float dynamic_belief = 0.6f;  ///< A point believed to move by more than this is dynamic, 0..1.
+  /// A belief of less weight than this does not make a point one that is known to be at rest, 0..1.
+  float certain_weight = 0.5f;
 };
 
 /// @throws std::invalid_argument naming the first option out of range.
@@ -82,6 +84,7 @@ inline void checkOptions(const MotionBeliefOptions& options) {
   share("dragged_weight", options.dragged_weight);
   share("memory_decay", options.memory_decay);
   share("dynamic_belief", options.dynamic_belief);
+  share("certain_weight", options.certain_weight);
 }
 
 /// What is believed about N key points; of the frame before, it is the memory for this one. The two
@@ -206,6 +209,7 @@ struct MotionBeliefWorkspace {
   detail::Votes votes;           ///< Of this frame's measured points.
   detail::Votes memory;          ///< All that the frame before believed.
   detail::Votes dynamic_memory;  ///< What it believed to move.
+  detail::Votes certain_memory;  ///< What it was certain of.
   Eigen::ArrayXf scratch;        ///< Of one count of votes.
 };
 
@@ -234,6 +238,7 @@ inline void collectMemory(const MotionBelief& memory, const MotionBeliefOptions&
                           MotionBeliefWorkspace& workspace) {
   workspace.memory.reserve(memory.size());
   workspace.dynamic_memory.reserve(memory.size());
+  workspace.certain_memory.reserve(memory.size());
   for (std::size_t k = 0; k < memory.size(); ++k) {
     if (isPlaced(memory.u[k], memory.v[k], memory.depth[k]) && memory.weight[k] > 0.0f &&
         !std::isnan(memory.belief[k])) {
@@ -241,6 +246,10 @@ inline void collectMemory(const MotionBelief& memory, const MotionBeliefOptions&
                            memory.weight[k]);
       if (memory.belief[k] > options.dynamic_belief) {
         workspace.dynamic_memory.add(memory.u[k], memory.v[k], memory.depth[k], memory.belief[k],
+                                     memory.weight[k]);
+      }
+      if (memory.weight[k] >= options.certain_weight) {
+        workspace.certain_memory.add(memory.u[k], memory.v[k], memory.depth[k], memory.belief[k],
                                      memory.weight[k]);
       }
     }
@@ -361,39 +370,46 @@ inline MotionBelief updateMotionBelief(const MotionBeliefInput& input, const Mot
   return current;
 }
 
-/// Which of N points the frame before believed to move, where they were then: flags for matches
-/// that are not to speak for the camera's motion.
+/// What the frame before knows of N points by where they were then, for the choice of matches that
+/// speak for the camera's motion. What appears has no past: a person who steps out from behind
+/// another one is unknown until a frame has judged it with some certainty.
 ///
 /// @param depth N depths of their surfaces (m). @param earlier_u, earlier_v N pixels in the frame
-/// of the memory; not finite = no match.
-/// @return N flags, 1 = moved; 0 also where nothing is remembered.
+/// of the memory; not finite = no match, and nothing is known.
+/// @return N verdicts: moving where the neighbours' mean belief is above dynamic_belief; else at
+/// rest where one of them has at least certain_weight.
 /// @throws std::invalid_argument when sizes differ or an option is out of range.
-inline std::vector<std::uint8_t> rememberedToMove(Span<const float> depth,
-                                                  Span<const float> earlier_u,
-                                                  Span<const float> earlier_v,
-                                                  const MotionBelief& memory,
-                                                  const MotionBeliefOptions& options,
-                                                  MotionBeliefWorkspace& workspace) {
+inline std::vector<KnownMotion> knownMotion(Span<const float> depth, Span<const float> earlier_u,
+                                            Span<const float> earlier_v, const MotionBelief& memory,
+                                            const MotionBeliefOptions& options,
+                                            MotionBeliefWorkspace& workspace) {
   checkOptions(options);
-  checkBelief(memory, "rememberedToMove: memory");
+  checkBelief(memory, "knownMotion: memory");
   const std::size_t n = depth.size();
   if (earlier_u.size() != n || earlier_v.size() != n) {
-    throw std::invalid_argument("rememberedToMove: " + std::to_string(n) + " depths, but " +
+    throw std::invalid_argument("knownMotion: " + std::to_string(n) + " depths, but " +
                                 std::to_string(earlier_u.size()) + " columns and " +
                                 std::to_string(earlier_v.size()) + " rows; expected equal sizes");
   }
   detail::collectMemory(memory, options, workspace);
   detail::makeRoom(memory.size(), workspace);
-  std::vector<std::uint8_t> moved(n, 0);
+  std::vector<KnownMotion> known(n, KnownMotion::kUnknown);
   for (std::size_t i = 0; i < n; ++i) {
-    if (detail::isPlaced(earlier_u[i], earlier_v[i], depth[i])) {
-      const detail::VoteSum sum =
-          detail::countVotes(workspace.memory, earlier_u[i], earlier_v[i], depth[i],
-                             options.memory_sigma, options, workspace.scratch);
-      moved[i] = sum.weight > 0.0f && sum.value > options.dynamic_belief * sum.weight ? 1 : 0;
+    if (!detail::isPlaced(earlier_u[i], earlier_v[i], depth[i])) {
+      continue;
+    }
+    const auto count = [&](const detail::Votes& votes) {
+      return detail::countVotes(votes, earlier_u[i], earlier_v[i], depth[i], options.memory_sigma,
+                                options, workspace.scratch);
+    };
+    const detail::VoteSum sum = count(workspace.memory);
+    if (sum.weight > 0.0f && sum.value > options.dynamic_belief * sum.weight) {
+      known[i] = KnownMotion::kMoving;
+    } else if (count(workspace.certain_memory).weight > 0.0f) {
+      known[i] = KnownMotion::kAtRest;
     }
   }
-  return moved;
+  return known;
 }
 
 }  // namespace hmcdyn

@@ -104,6 +104,13 @@ struct PinholeCamera {
   }
 };
 
+/// What earlier frames have shown of a point.
+enum class KnownMotion : std::uint8_t {
+  kAtRest,
+  kUnknown,
+  kMoving,
+};
+
 /// The verdict on a key point.
 enum class PointLabel : std::uint8_t {
   kStatic,     ///< Outside every dynamic box: full weight.

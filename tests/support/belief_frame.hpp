@@ -27,6 +27,7 @@ inline MotionBeliefOptions fixedBeliefOptions() {
   options.memory_decay = 0.9f;
   options.weight_cap = 20.0f;
   options.dynamic_belief = 0.6f;
+  options.certain_weight = 0.5f;
   return options;
 }
 

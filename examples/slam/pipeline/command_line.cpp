@@ -225,6 +225,10 @@ void declareBelief(CLI::App& app, SlamOptions& options) {
                  "A point believed to move by more than this is dynamic, 0..1")
       ->capture_default_str()
       ->group("Belief");
+  app.add_option("--certain-weight", belief.certain_weight,
+                 "Points in boxes speak for the camera from this weight of a belief on, 0..1")
+      ->capture_default_str()
+      ->group("Belief");
   OpticalFlowOptions& flow = filter.flow;
   app.add_option("--flow-window", flow.window, "Side of the window of optical flow (px, odd)")
       ->capture_default_str()

@@ -37,6 +37,10 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+bool isByMemory(MatchSource source) {
+  return source == MatchSource::kAtRest || source == MatchSource::kNotMoving;
+}
+
 }  // namespace
 
 void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
@@ -51,7 +55,7 @@ void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
   }
   for (const EarlierFrameReport& report : filtered.earlier) {
     ++models[hmcdyn::toString(report.motion.model.kind)];
-    models_by_memory += report.motion.source == MatchSource::kNotMoving ? 1 : 0;
+    models_by_memory += isByMemory(report.motion.source) ? 1 : 0;
     ++fundamental[hmcdyn::toString(report.motion.verdict)];
   }
 }
