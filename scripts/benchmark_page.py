@@ -240,11 +240,13 @@ def plot(times, file):
                    f'stroke-width="{3 if name == "hmcdyn" else 1.6}"/>')
         svg += [f'<circle cx="{x(n):.1f}" cy="{y(t):.1f}" r="3" fill="{colours[name]}"/>'
                 for n, t in points]
-        labels.append((y(points[-1][1]), name))
-    last = -100.0
-    for position, name in sorted(labels):
-        last = max(position, last + 16)
-        svg.append(f'<text x="{width - right + 10}" y="{last + 4:.1f}" fill="{colours[name]}">'
+        labels.append((x(points[-1][0]), y(points[-1][1]), name))
+    # Beside the last point of each line, and those of one column below each other.
+    last = {}
+    for column, position, name in sorted(labels):
+        last[column] = max(position, last.get(column, -100.0) + 16)
+        svg.append(f'<text x="{column + 10:.1f}" y="{last[column] + 4:.1f}" fill="{colours[name]}" '
+                   f'stroke="#ffffff" stroke-width="4" paint-order="stroke">'
                    f'{name.replace("_", "::")}</text>')
     svg.append(f'<text x="{(left + width - right) / 2}" y="{height - 14}" text-anchor="middle">'
                'points N (neighbourhoods of about 30 points from N = 10,000 on)</text></svg>')
