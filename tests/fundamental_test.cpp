@@ -13,45 +13,22 @@
 #include <hmcdyn/fundamental.hpp>
 
 #include "invalid_argument.hpp"
+#include "motion_model_settings.hpp"
 #include "random.hpp"
 #include "two_view_scene.hpp"
 
 namespace hmcdyn {
 namespace {
 
+using test::fixedMotionModelOptions;
 using test::makeScene;
 using test::motionOf;
+using test::noisy;
 using test::SceneSettings;
 using test::TwoViewScene;
 
-constexpr double kNoise = 0.15;  // (px), what tracked key points have
-
-MotionModelOptions fixedOptions() {
-  MotionModelOptions options;
-  options.min_matches = 12;
-  options.min_background_matches = 60;
-  options.min_background_cells = 5;
-  options.inlier_threshold = 0.5f;
-  options.confidence = 0.999;
-  options.max_iterations = 2000;
-  options.seed = 1;
-  options.still_share = 0.9f;
-  options.still_displacement = 0.35f;
-  options.min_conditioning = 2.0f;
-  options.min_homography_share = 0.6f;
-  return options;
-}
-
-SceneSettings noisy(std::uint32_t seed, std::size_t points = 300) {
-  SceneSettings settings;
-  settings.points = points;
-  settings.noise = kNoise;
-  settings.seed = seed;
-  return settings;
-}
-
 MotionModelEstimate estimate(const TwoViewScene& scene, const std::vector<DetectionBox>& boxes = {},
-                             const MotionModelOptions& options = fixedOptions()) {
+                             const MotionModelOptions& options = fixedMotionModelOptions()) {
   return estimateMotionModel(scene.pairs(), boxes, options);
 }
 
@@ -81,7 +58,8 @@ TEST_P(MotionModelSeeds, TranslationDefinesF) {
     EXPECT_EQ(found.model.kind, TwoViewModelKind::kFundamental);
     EXPECT_NEAR(found.model.matrix.determinant(), 0.0, 1e-12);
     EXPECT_EQ(found.matches, 300U);
-    // Noise across the line has a deviation of kNoise * sqrt 2 (both frames), a median of 0.143.
+    // Noise across the line has a deviation of test::kTrackedNoise * sqrt 2 (both frames), a median
+    // of 0.143.
     EXPECT_NEAR(found.median_distance, 0.143, 0.04);
     EXPECT_GT(found.inliers, 270U);
 
@@ -114,7 +92,7 @@ TEST_P(MotionModelSeeds, AStillCameraMeasuresDisplacement) {
       scene.moveCurrent(i, {3.0, -4.0});
     }
   }
-  MotionModelOptions options = fixedOptions();
+  MotionModelOptions options = fixedMotionModelOptions();
   options.still_displacement = 1.0f;  // noise of both frames, 5 deviations
   const MotionModelEstimate found = estimate(scene, {box}, options);
   EXPECT_EQ(found.verdict, FundamentalVerdict::kCameraStill);
@@ -237,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, MotionModelSeeds, ::testing::Range(1U, 9U));
 
 TEST(MotionModel, TooFewMatchesGiveNone) {
   const Eigen::Isometry3d motion = motionOf({0.0, 0.0, 0.0}, {0.1, 0.0, 0.0});
-  MotionModelOptions options = fixedOptions();
+  MotionModelOptions options = fixedMotionModelOptions();
   options.min_matches = 8;
   for (const std::size_t n : {0U, 1U, 7U}) {
     const TwoViewScene scene = makeScene(motion, noisy(1, n));
@@ -339,7 +317,7 @@ TEST(MotionModel, UnequalSizesAreRefused) {
 
 TEST(MotionModel, OptionsOutOfRangeAreNamed) {
   const auto message = [](auto change) {
-    MotionModelOptions options = fixedOptions();
+    MotionModelOptions options = fixedMotionModelOptions();
     change(options);
     return test::invalidArgumentOf([&] { estimateMotionModel({}, {}, options); });
   };

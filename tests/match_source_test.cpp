@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which matches speak for the camera: the background, what is not known to move, or all.
+// Which matches speak for the camera: the background, what is known to be at
+// rest, what is not known to move, or all.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -10,31 +11,19 @@
 #include <hmcdyn/fundamental.hpp>
 
 #include "invalid_argument.hpp"
+#include "motion_model_settings.hpp"
 #include "two_view_scene.hpp"
 
 namespace hmcdyn {
 namespace {
 
+using test::fixedMotionModelOptions;
 using test::makeScene;
 using test::motionOf;
-using test::SceneSettings;
 using test::TwoViewScene;
 
-MotionModelOptions fixedOptions() {
-  MotionModelOptions options;
-  options.min_matches = 12;
-  options.min_background_matches = 60;
-  options.min_background_cells = 5;
-  options.inlier_threshold = 0.5f;
-  return options;
-}
-
 TwoViewScene sceneOf(std::size_t points, std::uint32_t seed = 1) {
-  SceneSettings settings;
-  settings.points = points;
-  settings.noise = 0.15;
-  settings.seed = seed;
-  return makeScene(motionOf({0.2, -0.5, 0.1}, {0.1, 0.02, 0.03}), settings);
+  return makeScene(motionOf({0.2, -0.5, 0.1}, {0.1, 0.02, 0.03}), test::noisy(seed, points));
 }
 
 const std::vector<DetectionBox> kWholeImage{{-50.0f, -50.0f, 800.0f, 600.0f, kPersonClassId, 1.0f}};
@@ -68,8 +57,9 @@ struct Crowd {
     }
     return static_cast<double>(near) / static_cast<double>(all);
   }
-  MotionModelEstimate estimate(const std::vector<KnownMotion>& knowing,
-                               const MotionModelOptions& options = fixedOptions()) const {
+  MotionModelEstimate estimate(
+      const std::vector<KnownMotion>& knowing,
+      const MotionModelOptions& options = fixedMotionModelOptions()) const {
     return estimateMotionModel(scene.pairs(), kWholeImage, knowing, options);
   }
 };
@@ -84,7 +74,7 @@ TEST(MatchSource, ABackgroundThatIsTooSmallGivesAllPoints) {
   ASSERT_LT(outside, 60U);
 
   // Then it is too few points ...
-  MotionModelOptions options = fixedOptions();
+  MotionModelOptions options = fixedMotionModelOptions();
   const MotionModelEstimate few = estimateMotionModel(scene.pairs(), box, options);
   EXPECT_EQ(few.source, MatchSource::kAll);
   EXPECT_EQ(few.matches, 200U);
@@ -106,8 +96,9 @@ TEST(MatchSource, ABackgroundThatIsTooSmallGivesAllPoints) {
 TEST(MatchSource, ABoxThatHoldsNothingLeavesAllOfTheBackground) {
   const TwoViewScene scene = sceneOf(200);
   const std::vector<DetectionBox> inverted{{600.0f, 400.0f, 10.0f, 10.0f, kPersonClassId, 1.0f}};
-  EXPECT_TRUE(backgroundSuffices(scene.pairs(), inverted, fixedOptions()));
-  const MotionModelEstimate found = estimateMotionModel(scene.pairs(), inverted, fixedOptions());
+  EXPECT_TRUE(backgroundSuffices(scene.pairs(), inverted, fixedMotionModelOptions()));
+  const MotionModelEstimate found =
+      estimateMotionModel(scene.pairs(), inverted, fixedMotionModelOptions());
   EXPECT_EQ(found.source, MatchSource::kBackground);
   EXPECT_EQ(found.matches, 200U);
 }
@@ -150,7 +141,7 @@ TEST(MatchSource, WhatHasJustAppearedDoesNotSpeakWhileOthersDo) {
     EXPECT_LT(crowd.shareOnLines(found.model, KnownMotion::kMoving), 0.1) << "seed " << seed;
 
     // Where too little is known to be at rest, the unknown speak, too.
-    MotionModelOptions options = fixedOptions();
+    MotionModelOptions options = fixedMotionModelOptions();
     options.min_background_matches = 101;
     const MotionModelEstimate short_of = crowd.estimate(known, options);
     EXPECT_EQ(short_of.source, MatchSource::kNotMoving);
@@ -161,15 +152,16 @@ TEST(MatchSource, WhatHasJustAppearedDoesNotSpeakWhileOthersDo) {
 TEST(MatchSource, EnoughBackgroundNeedsNoMemory) {
   const Crowd crowd(1);
   const MotionModelEstimate with =
-      estimateMotionModel(crowd.scene.pairs(), {}, crowd.known, fixedOptions());
-  const MotionModelEstimate without = estimateMotionModel(crowd.scene.pairs(), {}, fixedOptions());
+      estimateMotionModel(crowd.scene.pairs(), {}, crowd.known, fixedMotionModelOptions());
+  const MotionModelEstimate without =
+      estimateMotionModel(crowd.scene.pairs(), {}, fixedMotionModelOptions());
   EXPECT_EQ(with.source, MatchSource::kBackground);
   EXPECT_EQ(with.model.matrix, without.model.matrix);
 }
 
 TEST(MatchSource, TooLittleAtRestGivesAllPoints) {
   const Crowd crowd(1);
-  MotionModelOptions options = fixedOptions();
+  MotionModelOptions options = fixedMotionModelOptions();
   // Too few: 100 of 300 are at rest.
   ASSERT_EQ(crowd.at_rest, 100U);
   options.min_background_matches = 101;
@@ -193,7 +185,7 @@ TEST(MatchSource, KnowledgeOfAnotherSizeIsRefused) {
   const TwoViewScene scene = sceneOf(20);
   const std::vector<KnownMotion> known(19, KnownMotion::kAtRest);
   EXPECT_EQ(test::invalidArgumentOf(
-                [&] { estimateMotionModel(scene.pairs(), {}, known, fixedOptions()); }),
+                [&] { estimateMotionModel(scene.pairs(), {}, known, fixedMotionModelOptions()); }),
             "estimateMotionModel: known has 19 elements; expected none, or one for each of the 20 "
             "pairs");
 }

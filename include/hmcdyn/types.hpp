@@ -106,9 +106,9 @@ struct PinholeCamera {
 
 /// What earlier frames have shown of a point.
 enum class KnownMotion : std::uint8_t {
-  kAtRest,
-  kUnknown,
-  kMoving,
+  kAtRest,   ///< It was at rest, with some certainty.
+  kUnknown,  ///< Too little: it has just appeared, or nothing was measured near it.
+  kMoving,   ///< It moved.
 };
 
 /// The verdict on a key point.
