@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "synthesize/pi.hpp"
 #include "synthesize/random.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kRate = 120.0;   // samples a second
 constexpr double kBefore = 0.25;  // seconds kept before the first frame, for its motion blur
 

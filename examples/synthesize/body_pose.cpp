@@ -4,6 +4,7 @@
 
 #include "synthesize/body.hpp"
 #include "synthesize/body_proportions.hpp"
+#include "synthesize/pi.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Isometry3d offset(const Vector3d& t) {
   Isometry3d pose = Isometry3d::Identity();

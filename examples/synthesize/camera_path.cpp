@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "synthesize/pi.hpp"
 #include "synthesize/random.hpp"
 
 namespace hmcdyn::synthesize {
@@ -13,8 +14,6 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Isometry3d turned(const Isometry3d& pose, const Vector3d& axis, double angle) {
   Isometry3d result = pose;

@@ -8,18 +8,9 @@
 #include "synthesize/paint.hpp"
 
 namespace hmcdyn::synthesize {
-namespace {
 
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
-
-Isometry3f moved(const Isometry3f& at, float x, float y, float z, float yaw = 0.0f) {
-  return at * placed(x, y, z, yaw);
-}
-
-Vector3f point(const Isometry3f& at, float x, float y, float z) { return at * Vector3f(x, y, z); }
-
-}  // namespace
 
 Palette::Palette(TextureLibrary& t, std::uint64_t seed) {
   using paint::Color;

@@ -5,22 +5,12 @@
 #include <utility>
 
 #include "synthesize/furniture.hpp"
+#include "synthesize/pi.hpp"
 
 namespace hmcdyn::synthesize {
-namespace {
 
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
-
-constexpr float kPi = 3.14159265358979323846f;
-
-Isometry3f moved(const Isometry3f& at, float x, float y, float z, float yaw = 0.0f) {
-  return at * placed(x, y, z, yaw);
-}
-
-Vector3f point(const Isometry3f& at, float x, float y, float z) { return at * Vector3f(x, y, z); }
-
-}  // namespace
 
 void Furnisher::bookcase(const Isometry3f& at, float width, float height) {
   Mesh mesh;
@@ -98,7 +88,7 @@ void Furnisher::officeChair(const Isometry3f& at, bool red) {
          BoxMaterials::all({palette_.dark_metal, 0.2f, {0, 0}, {1, 1}}));
   addCylinder(mesh, point(at, 0, 0, 0.1f), point(at, 0, 0, 0.42f), 0.03f, 0.025f, 12, metal);
   for (int leg = 0; leg < 5; ++leg) {
-    const float angle = 2.0f * kPi * static_cast<float>(leg) / 5.0f + 0.3f;
+    const float angle = 2.0f * kPiF * static_cast<float>(leg) / 5.0f + 0.3f;
     const Vector3f end = point(at, 0.3f * std::cos(angle), 0.3f * std::sin(angle), 0.07f);
     addCylinder(mesh, point(at, 0, 0, 0.12f), end, 0.025f, 0.016f, 8, metal);
     addCylinder(mesh, end + Vector3f(-0.015f, 0, -0.04f), end + Vector3f(0.015f, 0, -0.04f), 0.03f,

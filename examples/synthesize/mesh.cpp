@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "synthesize/pi.hpp"
+
 namespace hmcdyn::synthesize {
 namespace {
 
 using Eigen::Isometry3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
-
-constexpr float kPi = 3.14159265358979323846f;
 
 std::uint32_t addVertex(Mesh& mesh, const Vector3f& position, const Vector3f& normal,
                         const Vector2f& uv) {
@@ -62,7 +62,7 @@ void addCap(Mesh& mesh, const Isometry3f& pose, const Ring& ring, int segments, 
   const std::uint32_t centre =
       addVertex(mesh, pose * Vector3f(ring.x, ring.y, ring.z), normal, middle);
   for (int i = 0; i <= segments; ++i) {
-    const float angle = 2.0f * kPi * static_cast<float>(i) / static_cast<float>(segments);
+    const float angle = 2.0f * kPiF * static_cast<float>(i) / static_cast<float>(segments);
     const Vector2f p = onRing(ring, angle).first;
     const Vector2f uv =
         middle + 0.5f * half.cwiseProduct(Vector2f(std::cos(angle), std::sin(angle)));
@@ -140,7 +140,7 @@ void addLoft(Mesh& mesh, const Isometry3f& pose, const std::vector<Ring>& rings,
     const Ring& above = rings[std::min(k + 1, rings.size() - 1)];
     for (int i = 0; i <= segments; ++i) {
       const float s = static_cast<float>(i) / static_cast<float>(segments);
-      const float angle = 2.0f * kPi * s - kPi;
+      const float angle = 2.0f * kPiF * s - kPiF;
       const auto [p, radial] = onRing(rings[k], angle);
       // The profile's slope tilts the normal up or down.
       const Vector2f before = onRing(below, angle).first;
@@ -180,7 +180,7 @@ void addEllipsoid(Mesh& mesh, const Isometry3f& pose, const Vector3f& radii, int
   const int bands = std::max(3, segments / 2);
   std::vector<Ring> rings;
   for (int k = 0; k <= bands; ++k) {
-    const float angle = kPi * (static_cast<float>(k) / static_cast<float>(bands) - 0.5f);
+    const float angle = kPiF * (static_cast<float>(k) / static_cast<float>(bands) - 0.5f);
     const float c = k == 0 || k == bands ? 0.0f : std::cos(angle);
     rings.push_back({radii.z() * std::sin(angle), radii.x() * c, radii.y() * c});
   }
@@ -193,5 +193,11 @@ Isometry3f placed(float x, float y, float z, float yaw) {
   pose.linear() = Eigen::AngleAxisf(yaw, Vector3f::UnitZ()).toRotationMatrix();
   return pose;
 }
+
+Isometry3f moved(const Isometry3f& at, float x, float y, float z, float yaw) {
+  return at * placed(x, y, z, yaw);
+}
+
+Vector3f point(const Isometry3f& at, float x, float y, float z) { return at * Vector3f(x, y, z); }
 
 }  // namespace hmcdyn::synthesize

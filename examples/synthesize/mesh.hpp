@@ -86,4 +86,10 @@ void addEllipsoid(Mesh& mesh, const Eigen::Isometry3f& pose, const Eigen::Vector
 /// A pose from a position (m) and a turn about z (rad).
 Eigen::Isometry3f placed(float x, float y, float z, float yaw = 0.0f);
 
+/// A pose given in the frame of `at`: position (m) and turn about its z (rad).
+Eigen::Isometry3f moved(const Eigen::Isometry3f& at, float x, float y, float z, float yaw = 0.0f);
+
+/// A point given in the frame of `at` (m).
+Eigen::Vector3f point(const Eigen::Isometry3f& at, float x, float y, float z);
+
 }  // namespace hmcdyn::synthesize

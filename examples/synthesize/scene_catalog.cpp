@@ -7,13 +7,13 @@
 
 #include "synthesize/camera_path.hpp"
 #include "synthesize/cast.hpp"
+#include "synthesize/pi.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLeft = kPi;
 constexpr double kRight = 0.0;
 constexpr double kTowards = -0.5 * kPi;  // the usual camera

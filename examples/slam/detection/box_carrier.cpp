@@ -3,37 +3,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "slam/detection/box_selection.hpp"
+#include "slam/detection/option_check.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
-constexpr float kHalf = 0.5f;  ///< Flow is followed on images of half the size.
-
-void require(bool good, const char* name, double value, const char* expected) {
-  if (!good) {
-    throw std::invalid_argument(
-        fmt::format("BoxCarrierOptions::{} is {}; expected {}", name, value, expected));
-  }
-}
-
 void checkOptions(const BoxCarrierOptions& o) {
-  require(o.max_bridge >= 0.0 && std::isfinite(o.max_bridge), "max_bridge", o.max_bridge,
-          "0 s or more");
-  require(o.max_carry >= 0.0, "max_carry", o.max_carry, "0 s or more");
-  require(o.history >= 0.0, "history", o.history, "0 s or more");
-  require(o.min_detections >= 1, "min_detections", o.min_detections, "1 or more");
-  require(o.grid >= 3 && o.grid <= 100, "grid", o.grid, "3..100");
-  require(o.min_points >= 2, "min_points", static_cast<double>(o.min_points), "2 or more");
-  require(o.depth_band > 0.0f, "depth_band", o.depth_band, "more than 0 m");
-  require(o.depth_gap > 0.0f, "depth_gap", o.depth_gap, "more than 0 m");
-  require(o.max_scatter > 0.0f, "max_scatter", o.max_scatter, "more than 0 px");
+  requireOption(o.max_bridge >= 0.0 && std::isfinite(o.max_bridge), "BoxCarrierOptions::max_bridge",
+                o.max_bridge, "0 s or more");
+  requireOption(o.max_carry >= 0.0, "BoxCarrierOptions::max_carry", o.max_carry, "0 s or more");
+  requireOption(o.history >= 0.0, "BoxCarrierOptions::history", o.history, "0 s or more");
+  requireOption(o.min_detections >= 1, "BoxCarrierOptions::min_detections", o.min_detections,
+                "1 or more");
+  requireOption(o.grid >= 3 && o.grid <= 100, "BoxCarrierOptions::grid", o.grid, "3..100");
+  requireOption(o.min_points >= 2, "BoxCarrierOptions::min_points",
+                static_cast<double>(o.min_points), "2 or more");
+  requireOption(o.depth_band > 0.0f, "BoxCarrierOptions::depth_band", o.depth_band,
+                "more than 0 m");
+  requireOption(o.depth_gap > 0.0f, "BoxCarrierOptions::depth_gap", o.depth_gap, "more than 0 m");
+  requireOption(o.max_scatter > 0.0f, "BoxCarrierOptions::max_scatter", o.max_scatter,
+                "more than 0 px");
 }
 
 float areaOf(const DetectionBox& box) {
@@ -123,7 +117,7 @@ KeyPoints pointsOnThing(const KeyPoints& grid, const DetectionBox& box, float th
                               ? std::abs(grid.depth[i] - thing_depth) <= options.depth_band
                               : std::abs(grid.u[i] - middle) <= reach;
     if (on_thing) {
-      points.push_back(grid.u[i] * kHalf, grid.v[i] * kHalf, grid.depth[i]);
+      points.push_back(grid.u[i] * kFlowScale, grid.v[i] * kFlowScale, grid.depth[i]);
     }
   }
   return points;
@@ -155,8 +149,8 @@ std::optional<BoxMotion> medianMotion(const KeyPoints& from, const FlowMatches& 
   std::vector<float> ratio;
   for (std::size_t k = 0; k < found.size(); ++k) {
     const std::size_t i = found[k];
-    du.push_back((to.u[i] - from.u[i]) / kHalf);
-    dv.push_back((to.v[i] - from.v[i]) / kHalf);
+    du.push_back((to.u[i] - from.u[i]) / kFlowScale);
+    dv.push_back((to.v[i] - from.v[i]) / kFlowScale);
     for (std::size_t m = 0; m < k; ++m) {
       const std::size_t j = found[m];
       const float before = std::hypot(from.u[i] - from.u[j], from.v[i] - from.v[j]);
@@ -234,7 +228,7 @@ void BoxCarrier::remember(const RgbdFrame& frame) {
     tracks_.clear();
   }
   cv::Mat half;
-  cv::resize(frame.gray, half, cv::Size(), kHalf, kHalf, cv::INTER_AREA);
+  cv::resize(frame.gray, half, cv::Size(), kFlowScale, kFlowScale, cv::INTER_AREA);
   history_.push_back({frame.index, frame.timestamp, frame.gray.size(),
                       buildFlowPyramid(half, options_.flow), frame.depth});
   while (history_.size() > 2 && frame.timestamp - history_.front().timestamp > options_.history) {

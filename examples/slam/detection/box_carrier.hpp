@@ -15,6 +15,9 @@
 
 namespace hmcdyn::slam {
 
+/// Boxes and regions are followed on images of half the size: their flow needs no more.
+inline constexpr float kFlowScale = 0.5f;
+
 struct BoxCarrierOptions {
   /// A box that the detector missed is bridged until it was not detected for so long (s); 0 = a
   /// missed box ends at once.

@@ -6,38 +6,33 @@
 #include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include <hmcdyn/epipolar.hpp>
 #include <hmcdyn/fundamental.hpp>
 
 #include "slam/detection/box_carrier.hpp"
+#include "slam/detection/option_check.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
-constexpr float kHalf = 0.5f;  ///< Flow is followed on images of half the size.
-
-void require(bool good, const char* name, double value, const char* expected) {
-  if (!good) {
-    throw std::invalid_argument(
-        fmt::format("MotionRegionOptions::{} is {}; expected {}", name, value, expected));
-  }
-}
-
 void checkOptions(const MotionRegionOptions& o) {
-  require(o.reduction >= 1 && o.reduction <= 16, "reduction", o.reduction, "1..16");
-  require(o.depth_step > 0.0f, "depth_step", o.depth_step, "more than 0");
-  require(o.max_slope > 0.0f, "max_slope", o.max_slope, "more than 0");
-  require(o.min_area >= 0.0f && o.min_area < o.max_area, "min_area", o.min_area,
-          "0 or more, below max_area");
-  require(o.baseline > 0.0 && o.baseline <= o.history, "baseline", o.baseline,
-          "more than 0 s, at most history");
-  require(o.grid_step >= 4, "grid_step", o.grid_step, "4 px or more");
-  require(o.min_distance > 0.0f, "min_distance", o.min_distance, "more than 0 px");
-  require(o.min_moving > 0.0f && o.min_moving <= 1.0f, "min_moving", o.min_moving, "0..1");
-  require(o.max_pause >= 0.0, "max_pause", o.max_pause, "0 s or more");
+  requireOption(o.reduction >= 1 && o.reduction <= 16, "MotionRegionOptions::reduction",
+                o.reduction, "1..16");
+  requireOption(o.depth_step > 0.0f, "MotionRegionOptions::depth_step", o.depth_step,
+                "more than 0");
+  requireOption(o.max_slope > 0.0f, "MotionRegionOptions::max_slope", o.max_slope, "more than 0");
+  requireOption(o.min_area >= 0.0f && o.min_area < o.max_area, "MotionRegionOptions::min_area",
+                o.min_area, "0 or more, below max_area");
+  requireOption(o.baseline > 0.0 && o.baseline <= o.history, "MotionRegionOptions::baseline",
+                o.baseline, "more than 0 s, at most history");
+  requireOption(o.grid_step >= 4, "MotionRegionOptions::grid_step", o.grid_step, "4 px or more");
+  requireOption(o.min_distance > 0.0f, "MotionRegionOptions::min_distance", o.min_distance,
+                "more than 0 px");
+  requireOption(o.min_moving > 0.0f && o.min_moving <= 1.0f, "MotionRegionOptions::min_moving",
+                o.min_moving, "0..1");
+  requireOption(o.max_pause >= 0.0, "MotionRegionOptions::max_pause", o.max_pause, "0 s or more");
 }
 
 /// The depths in the middle of each square of pixels.
@@ -111,7 +106,7 @@ KeyPoints gridOver(const cv::Mat& depth, int step) {
   KeyPoints points;
   for (int v = step / 2; v < depth.rows; v += step) {
     for (int u = step / 2; u < depth.cols; u += step) {
-      points.push_back(static_cast<float>(u) * kHalf, static_cast<float>(v) * kHalf,
+      points.push_back(static_cast<float>(u) * kFlowScale, static_cast<float>(v) * kFlowScale,
                        depth.at<float>(v, u));
     }
   }
@@ -123,7 +118,7 @@ std::vector<float> distancesOf(const KeyPoints& points, const FlowMatches& match
                                const MotionRegionOptions& region) {
   const auto whole = [](std::vector<float> values) {
     std::transform(values.begin(), values.end(), values.begin(),
-                   [](float value) { return value / kHalf; });
+                   [](float value) { return value / kFlowScale; });
     return values;
   };
   const std::vector<float> earlier_u = whole(matches.u);
@@ -148,8 +143,8 @@ std::vector<Evidence> evidenceOf(const DepthSegments& segments, const KeyPoints&
                                  const MotionRegionOptions& options) {
   std::vector<Evidence> evidence(segments.rect.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const int column = static_cast<int>(points.u[i] / kHalf) / options.reduction;
-    const int row = static_cast<int>(points.v[i] / kHalf) / options.reduction;
+    const int column = static_cast<int>(points.u[i] / kFlowScale) / options.reduction;
+    const int row = static_cast<int>(points.v[i] / kFlowScale) / options.reduction;
     if (!std::isfinite(distance[i]) || column >= segments.label.cols ||
         row >= segments.label.rows) {
       continue;
@@ -249,7 +244,7 @@ std::vector<DetectionBox> MotionRegions::update(const RgbdFrame& frame) {
     throw std::invalid_argument("MotionRegions: gray and depth differ in size");
   }
   cv::Mat half;
-  cv::resize(frame.gray, half, cv::Size(), kHalf, kHalf, cv::INTER_AREA);
+  cv::resize(frame.gray, half, cv::Size(), kFlowScale, kFlowScale, cv::INTER_AREA);
   if (!history_.empty() && (frame.timestamp <= history_.back().timestamp ||
                             history_.back().pyramid.front().size() != half.size())) {
     history_.clear();

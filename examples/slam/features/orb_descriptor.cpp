@@ -9,7 +9,6 @@
 namespace hmcdyn::slam {
 namespace {
 
-constexpr int kCentroidRadius = 15;
 constexpr int kCentroidRow = 2 * kCentroidRadius + 2;  // a multiple of 8 for the vector units
 
 /// Columns of the disc: u inside, 0 outside; and 1 inside, 0 outside.

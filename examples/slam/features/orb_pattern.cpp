@@ -22,7 +22,6 @@ constexpr double kSigma = (2 * kPatternRadius + 1) / 5.0;  // px; BRIEF's G(0, S
 constexpr double kCorrelationLength = 4.0;                 // px
 constexpr double kLargestCorrelation = 0.3;                // of two bits
 constexpr double kDeviationWeight = 0.5;                   // against the bias, in the ranking
-constexpr int kCentroidRadius = 15;                        // px
 
 struct Point {
   int x = 0;

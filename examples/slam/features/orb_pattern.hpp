@@ -12,6 +12,10 @@ inline constexpr std::size_t kDescriptorBits = 256;
 /// No test reaches farther from the key point than this (px of the pyramid level), however rotated.
 inline constexpr int kPatternRadius = 18;
 
+/// A key point looks to the intensity centroid of a disc with this radius (px of the pyramid
+/// level).
+inline constexpr int kCentroidRadius = 15;
+
 /// Where a descriptor samples the patch, relative to the key point (px). Bit i is set where point i
 /// is darker than point i + 256.
 struct OrbPattern {
