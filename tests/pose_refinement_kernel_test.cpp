@@ -195,8 +195,10 @@ TEST_P(Collapse, PointBehindTheCameraCountsOnlyWithWeight) {
   EXPECT_EQ(without.normal, before.normal);
   EXPECT_EQ(without.gradient, before.gradient);
   EXPECT_EQ(without.cost, before.cost);
-  EXPECT_GT(squared[3], kBehindCamera);
-  EXPECT_LE(*std::max_element(squared.begin() + 4, squared.end()), kBehindCamera);
+  // What follows the points only fills the last block, and may lie anywhere.
+  for (std::size_t i = 0; i < one.points.size(); ++i) {
+    EXPECT_EQ(squared[i] > kBehindCamera, i == 3) << i << ": " << squared[i];
+  }
 
   one.points[3].weight = 1e-6;
   EXPECT_EQ(collapseAt(one, one.pose, squared).cost, std::numeric_limits<double>::infinity());
