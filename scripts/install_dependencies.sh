@@ -5,7 +5,7 @@ set -euo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--check] [--ci] [--bench] [--fuzz]
+Usage: ${0##*/} [--check] [--ci] [--bench] [--clang]
 
 Installs the packages that hmcdyn needs to be built and tested (Debian, Ubuntu). Does nothing where
 all are installed. Needs root or sudo; without either it says what to install and fails.
@@ -13,7 +13,7 @@ all are installed. Needs root or sudo; without either it says what to install an
   --check   only list what is missing; exit code 1 when something is
   --ci      also what .ci/run needs: clang-format, clang-tidy, Doxygen, and Chromium to open the report in
   --bench   also the peers that the benchmarks measure against: Open3D and PCL
-  --fuzz    also clang and its fuzzer, for scripts/fuzz.sh
+  --clang   also clang, its sanitizers and its fuzzer: preset asan-ubsan, scripts/fuzz.sh
   --help    this text
 USAGE
 }
@@ -32,7 +32,7 @@ for argument in "$@"; do
   case "$argument" in
     --check) only_check=true ;;
     --ci) packages+=(clang-format clang-tidy chromium doxygen) ;;
-    --fuzz) packages+=(clang libclang-rt-14-dev) ;;
+    --clang) packages+=(clang libclang-rt-14-dev) ;;
     --bench) packages+=(libopen3d-dev libpcl-dev python3) ;;
     --help | -h) usage && exit 0 ;;
     *)

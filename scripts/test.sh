@@ -58,7 +58,9 @@ result() {
 }
 
 if $install; then
-  scripts/install_dependencies.sh || finish 1 "dependencies are missing"
+  options=()
+  [[ $preset == asan-ubsan ]] && options=(--clang)
+  scripts/install_dependencies.sh "${options[@]}" || finish 1 "dependencies are missing"
 fi
 cmake --preset "$preset" || finish 1 "configuring failed"
 build=(--preset "$preset" --parallel "$jobs")
