@@ -5,83 +5,99 @@ set -uo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--preset NAME] [--jobs N] [--all | FILE...]
+Usage: ${0##*/} [--jobs N] [--since REVISION | --all | FILE...]
 
-Runs clang-tidy with the checks of .clang-tidy over the given .cpp files, or over the library and
-the examples. The preset must have been built. A file that passed is not looked at again until it, a
-header it includes, its flags or the checks change.
+Runs clang-tidy with the checks of .clang-tidy over the given files, or over all .cpp files of the
+library and the examples with the headers they include. A file that passed is not looked at again
+until it, a header it includes, its flags or the checks change.
 
-  --preset NAME   preset whose compile commands are used (default: ci)
-  --jobs N        files at a time (default: number of processors, $(nproc))
-  --all           the tests, too (some 20 minutes more on 2 cores)
-  --help          this text
+  --since REVISION  only .cpp files and headers that changed since then (of git: HEAD~5, main, v0.1.0)
+  --all             the tests, too (some 20 minutes more on 2 cores)
+  --jobs N          files at a time (default: number of processors, $(nproc))
+  --help            this text
 USAGE
 }
 
-preset=ci
+usage_error() {
+  echo "${0##*/}: $1" >&2
+  usage >&2
+  exit 2
+}
+
 jobs=$(nproc)
-left_out='/tests/'
+since=
+left_out='^tests/'
 files=()
 while (($# > 0)); do
   case "$1" in
-    --preset) preset=${2:-} && shift ;;
-    --jobs) jobs=${2:-} && shift ;;
+    --jobs | --since)
+      (($# > 1)) || usage_error "$1 needs a value"
+      declare "${1#--}=$2"
+      shift
+      ;;
     --all) left_out='^$' ;;
     --help | -h) usage && exit 0 ;;
-    -*)
-      echo "${0##*/}: unknown argument $1" >&2
-      usage >&2
-      exit 2
-      ;;
+    -*) usage_error "unknown argument $1" ;;
     *) files+=("$(realpath -s "$1")") ;;
   esac
   shift
 done
+[[ $jobs =~ ^[1-9][0-9]*$ ]] || usage_error "--jobs is '$jobs'; expected a number above 0"
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
-export ROOT=$PWD
-export BUILD=$PWD/build/$preset
-commands=$BUILD/compile_commands.json
-if [[ ! -f $commands ]]; then
-  echo "${0##*/}: $commands is missing; run scripts/test.sh --preset $preset first" >&2
+export ROOT=$PWD BUILD=$PWD/build/tidy
+# Configured only: the compile commands are all that is asked of it.
+if ! configured=$(cmake --preset tidy 2>&1); then
+  echo "$configured"
   exit 1
 fi
 if ((${#files[@]} == 0)); then
-  # Generated sources lie in the build folder and are not ours to tidy.
-  mapfile -t files < <(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$commands" |
-    grep -v "^$BUILD/" | grep -v "$left_out" | sort -u)
+  if [[ -n $since ]]; then
+    changed=$(git diff --name-only --diff-filter=d "$since" -- '*.cpp' '*.hpp') ||
+      usage_error "--since is '$since', which git does not know"
+    mapfile -t files < <(grep -vE '^(tests|bench|fuzz)/' <<<"$changed" | sed -n "s|^.|$ROOT/&|p")
+    if ((${#files[@]} == 0)); then
+      echo "clang-tidy: no source of the library or the examples changed since $since"
+      exit 0
+    fi
+  else
+    # Generated sources lie in the build folder and are not ours to tidy.
+    mapfile -t files < <(sed -n "s|^ *\"file\": \"$ROOT/\(.*\)\",\{0,1\}$|\1|p" "$BUILD/compile_commands.json" |
+      grep -v '^build/' | grep -v "$left_out" | sort -u | sed "s|^|$ROOT/|")
+  fi
 fi
 
-export CACHE=$BUILD/tidy
-rm -rf "$CACHE/failed"
-mkdir -p "$CACHE/passed" "$CACHE/failed"
+export CACHE=$BUILD/passed FAILED=$BUILD/failed
+rm -rf "$FAILED"
+mkdir -p "$CACHE" "$FAILED"
 VERSION=$(clang-tidy --version) || exit 1
 export VERSION
 
-# What the verdict on a file depends on: the tool, the checks, the flags, and all files it includes.
+# What the verdict on a file depends on: the tool, the checks, the flags, and all text it sees.
 fingerprint() {
-  local command object
-  command=$(grep -F -- "-c $1\"" "$BUILD/compile_commands.json")
-  object=$(sed -n '1s/.* -o \([^ ]*\) .*/\1/p' <<<"$command")
+  local command
+  command=$(grep -F -- "-c $1\"" "$BUILD/compile_commands.json" | head -n 1 |
+    sed 's/^ *"command": "\(.*\)",$/\1/; s/\\"/"/g; s/\\\\/\\/g; s/ -o [^ ]* -c / -E -C /')
+  # A header has no command of its own; clang-tidy takes a neighbour's.
+  [[ -n $command ]] || return
   {
     echo "$VERSION"
-    echo "$command"
-    cat "$ROOT/.clang-tidy" "$1"
-    (cd "$BUILD" && ninja -t deps "$object" | sed -n 's/^    //p' | xargs -r sha256sum)
+    cat "$ROOT/.clang-tidy"
+    (cd "$BUILD" && eval "$command")
   } | sha256sum | cut -d' ' -f1
 }
 export -f fingerprint
 
 tidy_file() {
-  local name=${1#"$ROOT"/} stamp start=$SECONDS
-  stamp=$CACHE/passed/$(fingerprint "$1")
-  [[ -f $stamp ]] && return
+  local name=${1#"$ROOT"/} print start=$SECONDS
+  print=$(fingerprint "$1")
+  [[ -n $print && -f $CACHE/$print ]] && return
   if output=$(clang-tidy -p "$BUILD" --quiet "$1" 2>&1); then
     echo "$name: passed in $((SECONDS - start)) s"
-    touch "$stamp"
+    [[ -z $print ]] || touch "$CACHE/$print"
   else
     printf '%s: failed\n%s\n' "$name" "$output"
-    touch "$CACHE/failed/${name//\//_}"
+    touch "$FAILED/${name//\//_}"
   fi
 }
 export -f tidy_file
@@ -89,6 +105,6 @@ export -f tidy_file
 # shellcheck disable=SC2016 # $1 is the inner shell's
 printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$jobs" bash -c 'tidy_file "$1"' tidy_file
 status=$?
-failed=$(find "$CACHE/failed" -type f | wc -l)
+failed=$(find "$FAILED" -type f | wc -l)
 echo "clang-tidy: ${#files[@]} files, $failed failed, $((SECONDS / 60)) min $((SECONDS % 60)) s"
 ((failed == 0 && status == 0))
