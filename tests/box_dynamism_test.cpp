@@ -7,12 +7,13 @@
 
 #include <hmcdyn/box_dynamism.hpp>
 
+#include "constants.hpp"
 #include "invalid_argument.hpp"
 
 namespace hmcdyn {
 namespace {
 
-constexpr int kChairClassId = 56;
+using test::kChairClassId;
 
 BoxDynamismOptions paperOptions() {
   BoxDynamismOptions options;

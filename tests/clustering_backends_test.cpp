@@ -22,7 +22,7 @@ namespace {
 
 using test::Random;
 
-struct Input {
+struct PlanarInput {
   Eigen::Matrix2Xf points;
   float epsilon = 1.0f;
   int min_points = 5;
@@ -35,8 +35,8 @@ struct Input {
 
 /// Blobs, a line and scattered points, on a lattice of 1/8 (distances tie exactly all the time) or
 /// anywhere.
-Input makeInput(Random& random, bool on_lattice) {
-  Input input;
+PlanarInput makePlanarInput(Random& random, bool on_lattice) {
+  PlanarInput input;
   const int n = random.chance(0.03) ? random.integer(200, 450) : random.integer(0, 110);
   input.epsilon =
       on_lattice ? static_cast<float>(random.integer(1, 8)) / 8.0f : random.uniformFloat(0.1, 1.0);
@@ -84,7 +84,7 @@ detail::PlanarPoints planar(const Eigen::Matrix2Xf& points) {
   return result;
 }
 
-Clustering byBitSets(const Input& input) {
+Clustering byBitSets(const PlanarInput& input) {
   Clustering result = sized(static_cast<std::size_t>(input.points.cols()));
   detail::BitSetWorkspace workspace;
   detail::clusterByBitSets(planar(input.points), input.epsilon, input.min_points, workspace,
@@ -92,7 +92,7 @@ Clustering byBitSets(const Input& input) {
   return result;
 }
 
-Clustering byGrid(const Input& input, detail::GridWorkspace& workspace) {
+Clustering byGrid(const PlanarInput& input, detail::GridWorkspace& workspace) {
   Clustering result = sized(static_cast<std::size_t>(input.points.cols()));
   const detail::PlanarPoints points = planar(input.points);
   const detail::GridLayout layout = detail::layOutGrid(points, input.epsilon);
@@ -105,7 +105,7 @@ Clustering byGrid(const Input& input, detail::GridWorkspace& workspace) {
   return result;
 }
 
-Clustering byKdTree(const Input& input) {
+Clustering byKdTree(const PlanarInput& input) {
   Clustering result = sized(static_cast<std::size_t>(input.points.cols()));
   detail::clusterByKdTree(input.points, detail::MinkowskiBall(2.0f, input.epsilon),
                           input.min_points, result);
@@ -126,7 +126,7 @@ TEST_P(ClusteringBackends, AgreeWithTheTextbook) {
   int borders = 0;
   int several = 0;
   for (int trial = 0; trial < 1500; ++trial) {
-    const Input input = makeInput(random, GetParam());
+    const PlanarInput input = makePlanarInput(random, GetParam());
     const test::BruteForceClusters textbook =
         test::BruteForceDbscan(input.points, input.epsilon, input.min_points, 2.0).result();
     Clustering expected;
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Coordinates, ClusteringBackends, ::testing::Bool(),
                          });
 
 /// What densityClusters gives, which picks the backend.
-Clustering dispatched(const Input& input) {
+Clustering dispatched(const PlanarInput& input) {
   ClusteringOptions options;
   options.epsilon = input.epsilon;
   options.min_points = input.min_points;
@@ -165,7 +165,7 @@ Clustering dispatched(const Input& input) {
 
 TEST(ClusteringDispatch, AllPointsEqual) {
   for (const int n : {1, 64, 65, 256, 257, 5000}) {
-    const Input input{Eigen::Matrix2Xf::Constant(2, n, 0.7f), 0.1f, 1};
+    const PlanarInput input{Eigen::Matrix2Xf::Constant(2, n, 0.7f), 0.1f, 1};
     const Clustering result = dispatched(input);
     EXPECT_EQ(result.clusters, 1) << n;
     EXPECT_EQ(result.label, std::vector<int>(static_cast<std::size_t>(n), 0)) << n;
@@ -176,7 +176,7 @@ TEST(ClusteringDispatch, AllPointsEqual) {
 TEST(ClusteringDispatch, AllNoise) {
   for (const int n : {1, 64, 65, 256, 257, 5000}) {
     // A diagonal with steps above the radius.
-    Input input{Eigen::Matrix2Xf(2, n), 0.25f, 2};
+    PlanarInput input{Eigen::Matrix2Xf(2, n), 0.25f, 2};
     for (int i = 0; i < n; ++i) {
       input.points.col(i).setConstant(0.2f * static_cast<float>(i));
     }
@@ -190,7 +190,7 @@ TEST(ClusteringDispatch, AllNoise) {
 TEST(ClusteringDispatch, EveryPointItsOwnCluster) {
   for (const int n : {64, 256, 257, 3000}) {
     // Descending: the last point is the smallest.
-    Input input{Eigen::Matrix2Xf(2, n), 0.25f, 1};
+    PlanarInput input{Eigen::Matrix2Xf(2, n), 0.25f, 1};
     std::vector<int> expected;
     for (int i = 0; i < n; ++i) {
       input.points.col(i) << static_cast<float>(n - i), 0.0f;
@@ -203,7 +203,7 @@ TEST(ClusteringDispatch, EveryPointItsOwnCluster) {
 TEST(ClusteringDispatch, OneLongSnake) {
   for (const int n : {64, 256, 257, 20000}) {
     // Steps of 1/8 along a line, radius 1/8: the ends are border points under MinPoints 3.
-    Input input{Eigen::Matrix2Xf::Zero(2, n), 0.125f, 3};
+    PlanarInput input{Eigen::Matrix2Xf::Zero(2, n), 0.125f, 3};
     for (int i = 0; i < n; ++i) {
       input.points(1, i) = static_cast<float>(i) / 8.0f;
     }
@@ -228,7 +228,7 @@ TEST(ClusteringDispatch, NothingFinite) {
 
 TEST(ClusteringDispatch, WidelyScatteredPointsNeedNoGrid) {
   // Given two groups and points that lie too far away for any grid
-  Input input{Eigen::Matrix2Xf(2, 600), 1.0f, 4};
+  PlanarInput input{Eigen::Matrix2Xf(2, 600), 1.0f, 4};
   for (int i = 0; i < 600; ++i) {
     const auto value = static_cast<float>(i);
     input.points.col(i) << (i < 500 ? static_cast<float>(i % 2) * 50.0f : 1e30f * (value - 450.0f)),
@@ -248,7 +248,7 @@ TEST(ClusteringDispatch, AReusedWorkspaceGivesWhatAFreshOneGives) {
   ClusteringOptions options;
   options.order = 2.0f;
   for (int trial = 0; trial < 300; ++trial) {
-    const Input input = makeInput(random, trial % 2 == 0);
+    const PlanarInput input = makePlanarInput(random, trial % 2 == 0);
     options.epsilon = input.epsilon;
     options.min_points = input.min_points;
     ASSERT_NO_FATAL_FAILURE(expectEqual(densityClusters(input.points, options, workspace),

@@ -13,14 +13,15 @@
 #include <hmcdyn/clustering.hpp>
 
 #include "brute_force_dbscan.hpp"
+#include "constants.hpp"
 #include "random.hpp"
 
 namespace hmcdyn {
 namespace {
 
+using test::kInfinity;
 using test::Random;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kOrders[] = {1.0f, 2.0f, 3.0f, kInfinity};
 
 struct Input {

@@ -8,12 +8,13 @@
 
 #include <hmcdyn/clustering.hpp>
 
+#include "constants.hpp"
 #include "invalid_argument.hpp"
 
 namespace hmcdyn {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+using test::kInfinity;
 
 ClusteringOptions options(float epsilon, int min_points, float order = 2.0f) {
   ClusteringOptions result;

@@ -19,10 +19,7 @@ namespace {
 
 using test::LayeredScene;
 
-// A camera that moves 0.02 m a frame: the walls move by 1, 2 and 3 px; a thing that rises by 3 px.
-constexpr double kStep = 0.02;
-
-DynamicFeatureFilterOptions fixedOptions() {
+DynamicFeatureFilterOptions beliefOptions() {
   DynamicFeatureFilterOptions options;
   options.flow.window = 11;
   options.flow.max_level = 1;
@@ -41,11 +38,11 @@ DynamicFeatureFilterOptions fixedOptions() {
 }
 
 /// A frame of the scene with its depth image, and earlier ones.
-struct Clip {
-  explicit Clip(const std::vector<int>& frames_ago,
-                const DynamicFeatureFilterOptions& with = fixedOptions(),
-                const Eigen::Vector2d& thing_step = {1.0, -3.0})
-      : scene(kStep, thing_step),
+struct BelievedClip {
+  explicit BelievedClip(const std::vector<int>& frames_ago,
+                        const DynamicFeatureFilterOptions& with = beliefOptions(),
+                        const Eigen::Vector2d& thing_step = {1.0, -3.0})
+      : scene(LayeredScene::kUsualStep, thing_step),
         options(with),
         points(LayeredScene::keyPoints()),
         boxes{LayeredScene::boxOfThing()},
@@ -98,7 +95,7 @@ std::size_t measured(const std::vector<float>& distance) {
 }
 
 TEST(DynamicFeatureFilterBelief, WithoutBoxesAndMemoryNothingIsFollowed) {
-  Clip clip({1});
+  BelievedClip clip({1});
   clip.boxes.clear();
   for (const bool use_belief : {true, false}) {
     clip.options.use_belief = use_belief;
@@ -112,7 +109,7 @@ TEST(DynamicFeatureFilterBelief, WithoutBoxesAndMemoryNothingIsFollowed) {
 }
 
 TEST(DynamicFeatureFilterBelief, NoBackgroundBudgetFollowsAllEvenWithoutBoxes) {
-  Clip clip({1});
+  BelievedClip clip({1});
   clip.boxes.clear();
   clip.options.flow_background = 0;
   const DynamicFeatureFilterResult result = clip.run();
@@ -123,7 +120,7 @@ TEST(DynamicFeatureFilterBelief, NoBackgroundBudgetFollowsAllEvenWithoutBoxes) {
 
 TEST(DynamicFeatureFilterBelief, WhatMovedBeforeIsFollowedWithoutABox) {
   // Given the thing's belief of a frame with a box, and a frame where the detector misses it
-  Clip clip({1});
+  BelievedClip clip({1});
   const MotionBelief memory = clip.run().belief;
   clip.boxes.clear();
   const DynamicFeatureFilterResult bridged = clip.run(&memory);
@@ -140,7 +137,7 @@ TEST(DynamicFeatureFilterBelief, WhatMovedBeforeIsFollowedWithoutABox) {
 
 TEST(DynamicFeatureFilterBelief, ACrowdThatFillsTheImageIsNotTakenForTheWorld) {
   // Given more points on the thing than on the walls, and a belief of a frame that shows both
-  Clip clip({1});
+  BelievedClip clip({1});
   clip.options.flow_in_boxes = 0;
   clip.options.motion.min_homography_share = 0.4f;
   const MotionBelief memory = clip.run().belief;
@@ -181,14 +178,14 @@ TEST(DynamicFeatureFilterBelief, ACrowdThatFillsTheImageIsNotTakenForTheWorld) {
 }
 
 TEST(DynamicFeatureFilterBelief, EnoughBackgroundNeedsNoMemory) {
-  const Clip clip({1});
+  const BelievedClip clip({1});
   const MotionBelief memory = clip.run().belief;
   const DynamicFeatureFilterResult result = clip.run(&memory);
   EXPECT_EQ(result.earlier.at(0).motion.source, MatchSource::kBackground);
 }
 
 TEST(DynamicFeatureFilterBelief, OnlyTheBudgetIsFollowedAndTheOthersAreJudged) {
-  const Clip clip({1});
+  const BelievedClip clip({1});
   const DynamicFeatureFilterResult result = clip.run();
   std::size_t in_box = 0;
   std::size_t background = 0;
@@ -216,7 +213,7 @@ TEST(DynamicFeatureFilterBelief, OnlyTheBudgetIsFollowedAndTheOthersAreJudged) {
 
 TEST(DynamicFeatureFilterBelief, TheFollowedBackgroundIsSpreadOverTheImage) {
   // Given a grid of 12 x 12 cells, of which those with background points beyond the margin
-  const Clip clip({1});
+  const BelievedClip clip({1});
   const DynamicFeatureFilterResult result = clip.run();
   const auto cell = [&](std::size_t i) {
     return static_cast<std::size_t>(clip.points.v[i] / LayeredScene::kHeight * 12) * 12 +
@@ -239,7 +236,7 @@ TEST(DynamicFeatureFilterBelief, TheFollowedBackgroundIsSpreadOverTheImage) {
 }
 
 TEST(DynamicFeatureFilterBelief, WithoutBeliefsEveryPointInABoxIsFollowed) {
-  Clip clip({1});
+  BelievedClip clip({1});
   clip.options.use_belief = false;
   const DynamicFeatureFilterResult result = clip.run();
   std::size_t in_box = 0;
@@ -255,7 +252,7 @@ TEST(DynamicFeatureFilterBelief, WithoutBeliefsEveryPointInABoxIsFollowed) {
 
 TEST(DynamicFeatureFilterBelief, OnlyTheRuleHmcFormsBeliefs) {
   for (const FilterRule rule : kFilterRules) {
-    Clip clip({1});
+    BelievedClip clip({1});
     clip.options.stage = test::fixedStageOptions(rule);
     const DynamicFeatureFilterResult with_depth = clip.run();
     EXPECT_EQ(with_depth.belief.size(), rule == FilterRule::kHmc ? clip.points.size() : 0U)
@@ -267,7 +264,7 @@ TEST(DynamicFeatureFilterBelief, OnlyTheRuleHmcFormsBeliefs) {
 
 /// Share of the thing's and the walls' points that were found where they were, against `frames`
 /// ago.
-double shareRight(const Clip& clip, const FlowMatches& flow, int frames) {
+double shareRight(const BelievedClip& clip, const FlowMatches& flow, int frames) {
   std::size_t right = 0;
   std::size_t followed = 0;
   for (std::size_t i = 0; i < clip.points.size(); ++i) {
@@ -286,10 +283,10 @@ double shareRight(const Clip& clip, const FlowMatches& flow, int frames) {
 
 TEST(DynamicFeatureFilterBelief, AgesProlongTheFlowToOlderFrames) {
   // Given a neighbour, and a frame 12 ago, when the lowest wall was 36 px away
-  DynamicFeatureFilterOptions options = fixedOptions();
+  DynamicFeatureFilterOptions options = beliefOptions();
   options.flow_background = 0;
   options.flow_in_boxes = 0;
-  Clip clip({1, 12}, options, {1.0, -0.5});
+  BelievedClip clip({1, 12}, options, {1.0, -0.5});
   const double prolonged = shareRight(clip, clip.run().earlier.at(1).flow, 12);
   // When nothing says how old they are
   clip.ages.assign(2, 0.0);
@@ -301,14 +298,14 @@ TEST(DynamicFeatureFilterBelief, AgesProlongTheFlowToOlderFrames) {
 }
 
 TEST(DynamicFeatureFilterBelief, InputOfAnotherSizeIsNamed) {
-  Clip clip({1});
-  const auto message = [](const Clip& of, const MotionBelief* memory = nullptr) {
+  BelievedClip clip({1});
+  const auto message = [](const BelievedClip& of, const MotionBelief* memory = nullptr) {
     return test::invalidArgumentOf([&] { of.run(memory); });
   };
   MotionBelief unequal = clip.run().belief;
   unequal.depth.pop_back();
   EXPECT_NE(message(clip, &unequal).find("memory: u has"), std::string::npos);
-  Clip other = clip;
+  BelievedClip other = clip;
   other.depth = clip.depth.rowRange(0, 100);
   EXPECT_EQ(message(other),
             "filterDynamicFeatures: depth is 320 x 100 px; expected the image's 320 x 240");

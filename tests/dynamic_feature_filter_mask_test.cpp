@@ -21,12 +21,10 @@ namespace {
 
 using test::LayeredScene;
 
-// A camera that moves 0.02 m a frame: the walls move by 1, 2 and 3 px; a thing that rises by 3 px.
-constexpr double kStep = 0.02;
 constexpr int kLabel = 7;
 const std::vector<LabelRegion> kThing = {{kLabel, kPersonClassId, 1.0f}};
 
-DynamicFeatureFilterOptions fixedOptions(bool use_belief) {
+DynamicFeatureFilterOptions maskOptions(bool use_belief) {
   DynamicFeatureFilterOptions options;
   options.flow.window = 11;
   options.flow.max_level = 1;
@@ -53,8 +51,8 @@ cv::Mat emptyMask() {
 }
 
 /// A frame of the scene, compared with the one before.
-struct Clip {
-  explicit Clip(bool use_belief) : options(fixedOptions(use_belief)) {
+struct MaskedClip {
+  explicit MaskedClip(bool use_belief) : options(maskOptions(use_belief)) {
     current = buildFlowPyramid(scene.grayOf(0), options.flow);
     before = buildFlowPyramid(scene.grayOf(1), options.flow);
     earlier.push_back({&before, {}, {}, 1.0 / 30.0});
@@ -63,11 +61,11 @@ struct Clip {
     input.earlier = earlier;
     input.depth = {depth.ptr<float>(), depth.cols, depth.rows, depth.step1()};
   }
-  ~Clip() = default;
-  Clip(const Clip&) = delete;  // `input` views the other members
-  Clip& operator=(const Clip&) = delete;
-  Clip(Clip&&) = delete;
-  Clip& operator=(Clip&&) = delete;
+  ~MaskedClip() = default;
+  MaskedClip(const MaskedClip&) = delete;  // `input` views the other members
+  MaskedClip& operator=(const MaskedClip&) = delete;
+  MaskedClip(MaskedClip&&) = delete;
+  MaskedClip& operator=(MaskedClip&&) = delete;
 
   DynamicFeatureFilterResult byBoxes(const std::vector<DetectionBox>& boxes) const {
     DynamicFeatureFilterInput frame = input;
@@ -85,7 +83,7 @@ struct Clip {
   }
 
   DynamicFeatureFilterOptions options;
-  LayeredScene scene{kStep, {1.0, -3.0}};
+  LayeredScene scene{LayeredScene::kUsualStep, {1.0, -3.0}};
   KeyPoints points = LayeredScene::keyPoints();
   cv::Mat depth = scene.depthOf(0);
   FlowPyramid current;
@@ -117,7 +115,7 @@ TEST(DynamicFeatureFilterMask, AMaskThatFillsItsBoxesGivesTheResultOfTheBoxes) {
   for (const bool use_belief : {false, true}) {
     SCOPED_TRACE(use_belief ? "with beliefs" : "without");
     // Given two boxes of two classes, and a mask of the same pixels
-    const Clip clip(use_belief);
+    const MaskedClip clip(use_belief);
     const std::vector<DetectionBox> boxes = {LayeredScene::boxOfThing(),
                                              {20.0f, 90.0f, 80.0f, 200.0f, 56, 0.5f}};
     cv::Mat labels = emptyMask();
@@ -138,7 +136,7 @@ TEST(DynamicFeatureFilterMask, AnLShapeLeavesThePointsInItsBoxAlone) {
   for (const bool use_belief : {false, true}) {
     SCOPED_TRACE(use_belief ? "with beliefs" : "without");
     // Given an L on the moving thing: its left third, and its lower third
-    const Clip clip(use_belief);
+    const MaskedClip clip(use_belief);
     cv::Mat labels = emptyMask();
     labels(cv::Rect(cv::Point(110, 50), cv::Point(137, 191))).setTo(kLabel);
     labels(cv::Rect(cv::Point(110, 145), cv::Point(191, 191))).setTo(kLabel);
@@ -169,7 +167,7 @@ TEST(DynamicFeatureFilterMask, AnLShapeLeavesThePointsInItsBoxAlone) {
 }
 
 TEST(DynamicFeatureFilterMask, WithoutARegionNothingIsFollowedAndAllIsStatic) {
-  const Clip clip(true);
+  const MaskedClip clip(true);
   cv::Mat labels = emptyMask();
   labels(pixelsOf(LayeredScene::boxOfThing())).setTo(kLabel);
   const DynamicFeatureFilterResult result = clip.byMask(labels, {});
@@ -179,7 +177,7 @@ TEST(DynamicFeatureFilterMask, WithoutARegionNothingIsFollowedAndAllIsStatic) {
 
 TEST(DynamicFeatureFilterMask, TwoImagesAndAMaskAreTheSameCall) {
   // Given
-  const Clip clip(false);
+  const MaskedClip clip(false);
   cv::Mat labels = emptyMask();
   labels(pixelsOf(LayeredScene::boxOfThing())).setTo(kLabel);
   // When
@@ -191,7 +189,7 @@ TEST(DynamicFeatureFilterMask, TwoImagesAndAMaskAreTheSameCall) {
 }
 
 TEST(DynamicFeatureFilterMask, RefusesWhatIsNoMaskOfTheFrame) {
-  const Clip clip(false);
+  const MaskedClip clip(false);
   const auto refusal = [&](const cv::Mat& labels) {
     return test::invalidArgumentOf([&] { clip.byMask(labels); });
   };
@@ -203,7 +201,7 @@ TEST(DynamicFeatureFilterMask, RefusesWhatIsNoMaskOfTheFrame) {
 }
 
 TEST(DynamicFeatureFilterMask, RefusesBoxesAndAMaskAtOnce) {
-  const Clip clip(false);
+  const MaskedClip clip(false);
   DynamicFeatureFilterInput frame = clip.input;
   const std::vector<DetectionBox> boxes = {LayeredScene::boxOfThing()};
   frame.boxes = boxes;
@@ -215,7 +213,7 @@ TEST(DynamicFeatureFilterMask, RefusesBoxesAndAMaskAtOnce) {
 }
 
 TEST(DynamicFeatureFilterMask, TwoImagesWithoutAMaskAreRefused) {
-  const Clip clip(false);
+  const MaskedClip clip(false);
   EXPECT_THAT(test::invalidArgumentOf([&] {
                 filterDynamicFeatures(clip.scene.grayOf(1), clip.scene.grayOf(0),
                                       clip.points.view(), cv::Mat(), kThing, clip.options);

@@ -106,13 +106,9 @@ void expectEqual(const std::vector<float>& actual, const std::vector<float>& exp
   }
 }
 
-// A camera that moves 0.02 m a frame: the walls move by 1, 2 and 3 px, and a thing that stood at
-// 1.5 m would by 4 px.
-constexpr double kStep = 0.02;
-
 TEST(DynamicFeatureFilter, AMovingThingGoesAndTheWallBesideItStays) {
   // Given a thing that rises by 3 px
-  const Clip clip(LayeredScene(kStep, {1.0, -3.0}), {1});
+  const Clip clip(LayeredScene(LayeredScene::kUsualStep, {1.0, -3.0}), {1});
 
   // When
   const DynamicFeatureFilterResult result = clip.run();
@@ -146,7 +142,7 @@ TEST(DynamicFeatureFilter, AMovingThingGoesAndTheWallBesideItStays) {
 TEST(DynamicFeatureFilter, TheEgoMotionDistanceSeesMotionAlongTheEpipolarLine) {
   // Given a thing that moves along its row by 1 px where 4 px would be rest
   DynamicFeatureFilterOptions options = fixedOptions();
-  const LayeredScene scene(kStep, {1.0, 0.0});
+  const LayeredScene scene(LayeredScene::kUsualStep, {1.0, 0.0});
   const Clip two_view(scene, {1}, options);
   EXPECT_LT(quantile(two_view, two_view.run().distance, true, 0.9), 0.3);
 
@@ -161,7 +157,7 @@ TEST(DynamicFeatureFilter, TheEgoMotionDistanceSeesMotionAlongTheEpipolarLine) {
 
 TEST(DynamicFeatureFilter, TheLargerDistanceIsPointByPoint) {
   // Given a thing that moves across by 2 px and along by 1 instead of 4: 2 px, and hypot(3, 2).
-  const LayeredScene scene(kStep, {1.0, -2.0});
+  const LayeredScene scene(LayeredScene::kUsualStep, {1.0, -2.0});
   DynamicFeatureFilterOptions options = fixedOptions();
   const std::vector<float> two_view = Clip(scene, {1}, options).run().distance;
   options.distance = DistanceKind::kEgoMotion;
@@ -181,7 +177,7 @@ TEST(DynamicFeatureFilter, TheLargerDistanceIsPointByPoint) {
 
 TEST(DynamicFeatureFilter, TheLargestDistanceOverTheEarlierFramesCounts) {
   // Given a slow thing: 0.6 px a frame, which only the frame five back shows
-  const LayeredScene scene(0.5 * kStep, {0.4, -0.6});
+  const LayeredScene scene(0.5 * LayeredScene::kUsualStep, {0.4, -0.6});
   const Clip near(scene, {1});
   const Clip both(scene, {1, 5});
   const DynamicFeatureFilterResult of_near = near.run();
@@ -204,7 +200,7 @@ TEST(DynamicFeatureFilter, TheLargestDistanceOverTheEarlierFramesCounts) {
 
 TEST(DynamicFeatureFilter, FramesWhoseModelDoesNotHoldDoNotCount) {
   // Given an earlier frame of another scene, and one without texture, beside a good one
-  const LayeredScene scene(kStep, {1.0, -3.0});
+  const LayeredScene scene(LayeredScene::kUsualStep, {1.0, -3.0});
   Clip clip(scene, {1});
   const std::vector<float> good = clip.run().distance;
   const test::Texture other(99);
@@ -232,7 +228,7 @@ TEST(DynamicFeatureFilter, FramesWhoseModelDoesNotHoldDoNotCount) {
 }
 
 TEST(DynamicFeatureFilter, WithoutAnEarlierFrameEverythingIsStatic) {
-  const Clip clip(LayeredScene(kStep, {1.0, -3.0}), {});
+  const Clip clip(LayeredScene(LayeredScene::kUsualStep, {1.0, -3.0}), {});
   for (const DistanceKind kind :
        {DistanceKind::kTwoView, DistanceKind::kEgoMotion, DistanceKind::kLarger}) {
     Clip with = clip;
@@ -249,7 +245,7 @@ TEST(DynamicFeatureFilter, WithoutAnEarlierFrameEverythingIsStatic) {
 }
 
 TEST(DynamicFeatureFilter, IdenticalImagesAreACameraThatStandsStill) {
-  const cv::Mat image = LayeredScene(kStep, {1.0, -3.0}).grayOf(0);
+  const cv::Mat image = LayeredScene(LayeredScene::kUsualStep, {1.0, -3.0}).grayOf(0);
   const KeyPoints points = LayeredScene::keyPoints();
   const std::vector<DetectionBox> boxes{LayeredScene::boxOfThing()};
   const DynamicFeatureFilterResult result =
@@ -276,7 +272,7 @@ TEST(DynamicFeatureFilter, AThingThatMovesBeforeAStillCamera) {
 }
 
 TEST(DynamicFeatureFilter, TwoImagesAreTheSmallestCall) {
-  const LayeredScene scene(kStep, {1.0, -3.0});
+  const LayeredScene scene(LayeredScene::kUsualStep, {1.0, -3.0});
   const Clip clip(scene, {1});
   const DynamicFeatureFilterResult full = clip.run();
   const DynamicFeatureFilterResult small = filterDynamicFeatures(
@@ -287,7 +283,7 @@ TEST(DynamicFeatureFilter, TwoImagesAreTheSmallestCall) {
 }
 
 TEST(DynamicFeatureFilter, AReusedWorkspaceGivesWhatAFreshOneGives) {
-  const Clip moving(LayeredScene(kStep, {1.0, -3.0}), {1});
+  const Clip moving(LayeredScene(LayeredScene::kUsualStep, {1.0, -3.0}), {1});
   Clip fewer = moving;
   fewer.points.u.resize(40);
   fewer.points.v.resize(40);
@@ -308,7 +304,7 @@ TEST(DynamicFeatureFilter, AReusedWorkspaceGivesWhatAFreshOneGives) {
 }
 
 TEST(DynamicFeatureFilter, NoKeyPointsAreFine) {
-  Clip clip(LayeredScene(kStep, {1.0, -3.0}), {1});
+  Clip clip(LayeredScene(LayeredScene::kUsualStep, {1.0, -3.0}), {1});
   clip.points = {};
   const DynamicFeatureFilterResult result = clip.run();
   EXPECT_TRUE(result.distance.empty());
@@ -318,7 +314,7 @@ TEST(DynamicFeatureFilter, NoKeyPointsAreFine) {
 TEST(DynamicFeatureFilter, MissingInputIsNamed) {
   DynamicFeatureFilterOptions options = fixedOptions();
   options.distance = DistanceKind::kEgoMotion;
-  const Clip clip(LayeredScene(kStep, {1.0, -3.0}), {1}, options);
+  const Clip clip(LayeredScene(LayeredScene::kUsualStep, {1.0, -3.0}), {1}, options);
   const auto message = [&](auto change, const PinholeCamera& camera = LayeredScene::kCamera) {
     std::vector<EarlierFrame> earlier = clip.earlierFrames();
     DynamicFeatureFilterInput input{&clip.current, clip.points.view(), clip.boxes, earlier, camera};

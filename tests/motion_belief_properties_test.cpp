@@ -11,16 +11,17 @@
 #include <hmcdyn/motion_belief.hpp>
 
 #include "belief_frame.hpp"
+#include "constants.hpp"
 #include "invalid_argument.hpp"
 #include "random.hpp"
 
 namespace hmcdyn {
 namespace {
 
+using test::kInfinity;
+
 using Frame = test::BeliefFrame;
 using test::update;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A frame drawn at random, the points in a given order and moved by (du, dv).
 Frame drawn(const std::vector<int>& order, float du, float dv) {

@@ -8,14 +8,15 @@
 #include <hmcdyn/motion_belief.hpp>
 
 #include "belief_frame.hpp"
+#include "constants.hpp"
 
 namespace hmcdyn {
 namespace {
 
+using test::kInfinity;
+
 using Frame = test::BeliefFrame;
 using test::update;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// The kernel's closed form.
 double kernel(double q) { return std::pow(std::max(0.0, 1.0 - q / 8.0), 4); }

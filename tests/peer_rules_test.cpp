@@ -9,13 +9,14 @@
 
 #include <hmcdyn/peer_rules.hpp>
 
+#include "constants.hpp"
 #include "invalid_argument.hpp"
 #include "random.hpp"
 
 namespace hmcdyn {
 namespace {
 
-constexpr int kChairClassId = 56;
+using test::kChairClassId;
 
 using Flags = std::vector<std::uint8_t>;
 using Indices = std::vector<std::uint32_t>;

@@ -18,15 +18,11 @@
 namespace hmcdyn {
 namespace {
 
+using test::disturbed;
 using test::makePoseScene;
 using test::motionBetween;
 using test::moved;
 using test::PoseScene;
-
-Eigen::Isometry3d disturbed(const PoseScene& scene, double radians = 0.02, double metres = 0.04) {
-  return moved(scene.camera_from_world, radians * Eigen::Vector3d(0.6, -0.64, 0.48),
-               metres * Eigen::Vector3d(-0.48, 0.6, 0.64));
-}
 
 void appendPoint(PoseScene& scene, const Eigen::Vector3d& world, float u, float v) {
   scene.x.push_back(static_cast<float>(world.x()));

@@ -17,16 +17,12 @@
 namespace hmcdyn {
 namespace {
 
+using test::disturbed;
 using test::makePoseScene;
 using test::motionBetween;
 using test::moved;
 using test::observe;
 using test::PoseScene;
-
-Eigen::Isometry3d disturbed(const PoseScene& scene, double radians = 0.03, double metres = 0.06) {
-  return moved(scene.camera_from_world, radians * Eigen::Vector3d(0.6, -0.64, 0.48),
-               metres * Eigen::Vector3d(-0.48, 0.6, 0.64));
-}
 
 /// One optimisation without robust loss: plain least squares.
 PoseRefinementOptions leastSquares() {

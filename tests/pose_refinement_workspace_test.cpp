@@ -1,57 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A workspace changes no result, and saves allocations.
-#include <atomic>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <utility>
 
 #include <gtest/gtest.h>
 
 #include <hmcdyn/pose_refinement.hpp>
 
+#include "counting_allocator.hpp"
 #include "pose_scene.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations{0};
-}  // namespace
-
-// Counts what the library allocates, with and without an alignment.
-// NOLINTBEGIN(cppcoreguidelines-no-malloc)
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
-  const auto step = static_cast<std::size_t>(alignment);
-  if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
-  std::free(memory);
-}
-// NOLINTEND(cppcoreguidelines-no-malloc)
 
 namespace hmcdyn {
 namespace {
 
+using test::allocations;
+using test::disturbed;
 using test::makePoseScene;
 using test::moved;
 using test::PoseScene;
-
-Eigen::Isometry3d disturbed(const PoseScene& scene) {
-  return moved(scene.camera_from_world, Eigen::Vector3d(0.012, -0.013, 0.01),
-               Eigen::Vector3d(-0.02, 0.024, 0.026));
-}
 
 TEST(PoseRefinementWorkspace, ChangesNoResult) {
   // Given one workspace that sees many points, few, none, depth rows, suspects, a second solver,
@@ -101,9 +67,9 @@ TEST(PoseRefinementWorkspace, LeavesOnlyTheResultToAllocate) {
   PoseRefinementOptions options;
   PoseRefinementWorkspace workspace;
   refinePose(scene.view(), scene.camera, initial, options, workspace);
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   const auto result = refinePose(scene.view(), scene.camera, initial, options, workspace);
-  const std::size_t during = allocations - before;
+  const std::size_t during = allocations() - before;
   ASSERT_TRUE(result.succeeded());
   // inlier, weight, and the strings of the message: at most one a round and two in the end.
   EXPECT_GE(during, 3U);

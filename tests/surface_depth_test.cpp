@@ -10,12 +10,14 @@
 
 #include <hmcdyn/surface_depth.hpp>
 
+#include "constants.hpp"
 #include "invalid_argument.hpp"
 
 namespace hmcdyn {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+using test::kInfinity;
+
 constexpr int kSide = 41;     // of the drawn images (px)
 constexpr float kAt = 20.0f;  // their middle
 

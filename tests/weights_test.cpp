@@ -9,13 +9,14 @@
 
 #include <hmcdyn/weights.hpp>
 
+#include "constants.hpp"
 #include "invalid_argument.hpp"
 #include "random.hpp"
 
 namespace hmcdyn {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+using test::kInfinity;
 
 WeightOptions options() {
   WeightOptions result;

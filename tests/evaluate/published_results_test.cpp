@@ -52,8 +52,9 @@ class PublishedResults : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     HMCDYN_SKIP_WITHOUT_SHARED("eval/published/" + GetParam());
-    const std::filesystem::path folder = test::sharedPath("eval/published/" + GetParam());
-    groundtruth_ = readTrajectory(test::sharedPath("eval/groundtruth/" + GetParam() + ".txt"));
+    const std::filesystem::path folder = hmcdyn::test::sharedPath("eval/published/" + GetParam());
+    groundtruth_ =
+        readTrajectory(hmcdyn::test::sharedPath("eval/groundtruth/" + GetParam() + ".txt"));
     estimate_ = readTrajectory(folder / "estimate.txt");
     ate_ = readPrinted(folder / "ate.txt");
     rpe_ = readPrinted(folder / "rpe.txt");

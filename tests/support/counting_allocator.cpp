@@ -1,23 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Replaces the global operator new; every other form ends up here. In a file of its own, where the
-// compiler cannot see through it and leave calls out.
+// Replaces the global operator new, with and without an alignment; every other form ends up here.
+// In a file of its own, where the compiler cannot see through it and leave calls out.
 #include "counting_allocator.hpp"
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
 namespace {
-std::size_t count = 0;
+std::atomic<std::size_t> count{0};
+
+void* counted(void* memory) {
+  ++count;
+  if (memory == nullptr) {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
 }  // namespace
 
 std::size_t hmcdyn::test::allocations() noexcept { return count; }
 
-void* operator new(std::size_t size) {
-  ++count;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
+// NOLINTBEGIN(cppcoreguidelines-no-malloc)
+void* operator new(std::size_t size) { return counted(std::malloc(size > 0 ? size : 1)); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  const auto step = static_cast<std::size_t>(alignment);
+  return counted(std::aligned_alloc(step, (size + step - 1) / step * step));
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
+  std::free(memory);
+}
+// NOLINTEND(cppcoreguidelines-no-malloc)

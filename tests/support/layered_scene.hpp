@@ -22,6 +22,9 @@ class LayeredScene {
   static constexpr int kHeight = 240;
   static constexpr PinholeCamera kCamera{300.0, 300.0, 160.0, 120.0};
   static constexpr double kThingDepth = 1.5;  ///< (m)
+  /// A camera's step a frame (m): the walls move by 1, 2 and 3 px, and what stands at kThingDepth
+  /// by 4.
+  static constexpr double kUsualStep = 0.02;
 
   /// @param camera_step sideways motion of the camera between two frames (m).
   /// @param thing_step motion of the thing in the image between two frames (px).

@@ -101,4 +101,11 @@ inline PoseScene makePoseScene(std::uint32_t seed, std::size_t points, double no
   return scene;
 }
 
+/// The true pose, turned and moved aside: where refinement starts.
+inline Eigen::Isometry3d disturbed(const PoseScene& scene, double radians = 0.03,
+                                   double metres = 0.06) {
+  return moved(scene.camera_from_world, radians * Eigen::Vector3d(0.6, -0.64, 0.48),
+               metres * Eigen::Vector3d(-0.48, 0.6, 0.64));
+}
+
 }  // namespace hmcdyn::test

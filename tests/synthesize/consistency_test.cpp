@@ -14,14 +14,14 @@
 namespace hmcdyn::synthesize {
 namespace {
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kImageWidth = 320;
+constexpr int kImageHeight = 240;
 
 RenderOptions options() {
   RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.camera = scaledCamera(kWidth, kHeight);
+  o.width = kImageWidth;
+  o.height = kImageHeight;
+  o.camera = scaledCamera(kImageWidth, kImageHeight);
   return o;
 }
 
@@ -48,8 +48,8 @@ Agreement compare(const RenderedFrame& a, const cv::Mat& depth_a, const Rendered
   const PinholeCamera camera = options().camera;
   const Eigen::Isometry3d b_from_a = b.camera_to_world.inverse() * a.camera_to_world;
   Agreement result;
-  for (int v = 0; v < kHeight; v += 3) {
-    for (int u = 0; u < kWidth; u += 3) {
+  for (int v = 0; v < kImageHeight; v += 3) {
+    for (int u = 0; u < kImageWidth; u += 3) {
       const float z = depth_a.at<float>(v, u);
       if (z <= 0.0f || a.mask.at<std::uint8_t>(v, u) != kMaskStatic) {
         continue;
@@ -58,7 +58,7 @@ Agreement compare(const RenderedFrame& a, const cv::Mat& depth_a, const Rendered
       const Eigen::Vector2d pixel = camera.project(p);
       const int x = static_cast<int>(std::floor(pixel.x()));
       const int y = static_cast<int>(std::floor(pixel.y()));
-      if (p.z() < 0.1 || x < 0 || y < 0 || x + 1 >= kWidth || y + 1 >= kHeight) {
+      if (p.z() < 0.1 || x < 0 || y < 0 || x + 1 >= kImageWidth || y + 1 >= kImageHeight) {
         continue;
       }
       const auto at = [&](int i, int j) {
@@ -120,7 +120,7 @@ TEST(Consistency, NoisyDepthAgreesWithinTheNoiseModel) {
   Renderer renderer(built.scene, options());
   const RenderedFrame a = renderer.render(0.5);
   const RenderedFrame b = renderer.render(1.4);
-  const Sensor sensor(NoiseModel::kKinect, {}, {kWidth, kHeight}, 3);
+  const Sensor sensor(NoiseModel::kKinect, {}, {kImageWidth, kImageHeight}, 3);
   cv::Mat measured;
   sensor.measure(a, 0, 0.5).depth.convertTo(measured, CV_32FC1, 1.0 / kDepthFactor);
   const Agreement agreement = compare(a, measured, b, 0.15);
@@ -135,8 +135,8 @@ TEST(Consistency, MovingPixelsBelongToAMoverAndStaticOnesToTheRoom) {
   Renderer renderer(built.scene, options());
   const RenderedFrame frame = renderer.render(2.0);
   int moving = 0;
-  for (int v = 0; v < kHeight; ++v) {
-    for (int u = 0; u < kWidth; ++u) {
+  for (int v = 0; v < kImageHeight; ++v) {
+    for (int u = 0; u < kImageWidth; ++u) {
       const bool of_mover = frame.mover.at<std::int16_t>(v, u) >= 0;
       ASSERT_EQ(frame.mask.at<std::uint8_t>(v, u) != kMaskStatic, of_mover);
       moving += frame.mask.at<std::uint8_t>(v, u) == kMaskMoving ? 1 : 0;

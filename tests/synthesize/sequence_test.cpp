@@ -2,7 +2,6 @@
 #include "synthesize/sequence.hpp"
 
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -18,18 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::readAll;
+using test::shortSequence;
 using test::TemporaryFolder;
-
-SequenceOptions shortSequence(const fs::path& output) {
-  SequenceOptions options;
-  options.scene = "walking_xyz";
-  options.output = output;
-  options.frames = 3;
-  options.width = 160;
-  options.height = 120;
-  options.threads = 2;
-  return options;
-}
 
 /// Lines without comments.
 std::vector<std::string> linesOf(const fs::path& path) {
@@ -41,16 +30,6 @@ std::vector<std::string> linesOf(const fs::path& path) {
     }
   }
   return lines;
-}
-
-std::map<std::string, std::string> contentOf(const fs::path& folder) {
-  std::map<std::string, std::string> content;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) {
-      content[fs::relative(entry.path(), folder).string()] = readAll(entry.path());
-    }
-  }
-  return content;
 }
 
 TEST(Sequence, WritesTheTumFormat) {
@@ -112,25 +91,6 @@ TEST(Sequence, CalibrationIsTumsCameraScaledToTheSize) {
   EXPECT_DOUBLE_EQ(full.fx, 535.4);
   EXPECT_DOUBLE_EQ(full.cx, 320.1);
   EXPECT_DOUBLE_EQ(full.cy, 247.6);
-}
-
-TEST(Sequence, SameSeedGivesTheSameBytesWhateverTheThreads) {
-  const TemporaryFolder folder;
-  SequenceOptions options = shortSequence(folder / "one");
-  options.threads = 1;
-  options.box_drop = 0.3;
-  options.box_jitter = 2.0;
-  writeSequence(options);
-  options.output = folder / "three";
-  options.threads = 3;
-  writeSequence(options);
-  const auto one = contentOf(folder / "one");
-  const auto three = contentOf(folder / "three");
-  ASSERT_EQ(one.size(), 3U * 3U + 6U);
-  ASSERT_EQ(one.size(), three.size());
-  for (const auto& [name, bytes] : one) {
-    EXPECT_TRUE(three.at(name) == bytes) << name << " differs";
-  }
 }
 
 TEST(Sequence, AnotherSeedGivesOtherBytes) {

@@ -13,6 +13,7 @@
 #include "synthesize/camera_path.hpp"
 #include "synthesize/renderer.hpp"
 #include "synthesize/scene.hpp"
+#include "synthesize/sequence.hpp"
 
 namespace hmcdyn::synthesize::test {
 
@@ -92,6 +93,18 @@ class TemporaryFolder {
 inline std::string readAll(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// Three small frames of walking_xyz, written by two threads.
+inline SequenceOptions shortSequence(const std::filesystem::path& output) {
+  SequenceOptions options;
+  options.scene = "walking_xyz";
+  options.output = output;
+  options.frames = 3;
+  options.width = 160;
+  options.height = 120;
+  options.threads = 2;
+  return options;
 }
 
 }  // namespace hmcdyn::synthesize::test

@@ -23,8 +23,6 @@ namespace {
 using hmcdyn::test::invalidArgumentOf;
 using namespace hmcdyn::slam::test;  // NOLINT(google-build-using-namespace): the scene's words
 
-const SightNoise kUsualNoise{0.7, 1.0, 12};
-
 /// Furniture in front of a wall 3.2 m away.
 Landmarks room(std::uint32_t seed, int in_front = 250, int on_wall = 150) {
   Random random(seed);

@@ -67,6 +67,8 @@ struct SightNoise {
   int flips = 0;       ///< Bits of each descriptor that are drawn and turned over.
 };
 
+inline const SightNoise kUsualNoise{0.7, 1.0, 12};
+
 /// What a camera sees of landmarks, those nearer than 0.3 m left out; a key point's map point is
 /// its landmark's number.
 inline LoopKeyFrame see(const Landmarks& landmarks, std::size_t id,

@@ -22,9 +22,7 @@ namespace {
 using hmcdyn::test::invalidArgumentOf;
 using namespace hmcdyn::slam::test;  // NOLINT(google-build-using-namespace): the scene's words
 
-const SightNoise kUsualNoise{0.7, 1.0, 12};
-
-Landmarks room(std::uint32_t seed) {
+Landmarks filledRoom(std::uint32_t seed) {
   Random random(seed);
   return scattered(random, 900, {-3.0, -1.1, 1.8}, {3.0, 1.1, 3.5});
 }
@@ -61,7 +59,7 @@ LoopKeyFrame lostAt(const Landmarks& landmarks, const Eigen::Isometry3d& pose,
 }
 
 TEST(Relocalizer, FindsAFrameInAKnownRoom) {
-  const Landmarks landmarks = room(1);
+  const Landmarks landmarks = filledRoom(1);
   const KnownRoom known(landmarks);
   for (const double x : {-1.1, 0.0, 0.4, 1.2}) {
     const Eigen::Isometry3d truth = motionOf({0.1, -0.2, 0.3}, {-x, 0.0, 0.2});
@@ -77,7 +75,7 @@ TEST(Relocalizer, FindsAFrameInAKnownRoom) {
 }
 
 TEST(Relocalizer, WithoutNoiseThePoseIsExact) {
-  const Landmarks landmarks = room(2);
+  const Landmarks landmarks = filledRoom(2);
   const KnownRoom known(landmarks, 6, {});
   const RelocalizationResult result = known.find(lostAt(landmarks, at(0.1), {}));
   ASSERT_TRUE(result.camera_from_world);
@@ -85,7 +83,7 @@ TEST(Relocalizer, WithoutNoiseThePoseIsExact) {
 }
 
 TEST(Relocalizer, TriesOnUntilThereAreEnoughInliersAndTakesTheBest) {
-  const Landmarks landmarks = room(15);
+  const Landmarks landmarks = filledRoom(15);
   const KnownRoom known(landmarks);
   const LoopKeyFrame frame = lostAt(landmarks, at(0.3));
   RelocalizerOptions options;
@@ -97,12 +95,12 @@ TEST(Relocalizer, TriesOnUntilThereAreEnoughInliersAndTakesTheBest) {
   options.enough_inliers = 0;
   EXPECT_EQ(known.find(frame, options).tried, 1U);
   // Enough is not before there is a pose.
-  EXPECT_EQ(known.find(lostAt(room(16), at(0.0)), options).tried, 5U);
+  EXPECT_EQ(known.find(lostAt(filledRoom(16), at(0.0)), options).tried, 5U);
 }
 
 // Each match is one landmark, by its number in the key frame and what the frame sees of it.
 TEST(Relocalizer, NamesTheMapPointsThatItSaw) {
-  const Landmarks landmarks = room(3);
+  const Landmarks landmarks = filledRoom(3);
   const KnownRoom known(landmarks);
   const LoopKeyFrame truth = see(landmarks, 0, at(0.3), 77, kUsualNoise);
   const RelocalizationResult result = known.find(lostAt(landmarks, at(0.3)));
@@ -118,7 +116,7 @@ TEST(Relocalizer, NamesTheMapPointsThatItSaw) {
 
 // The sensor gives no depth any more: pixels against the points of the key frame.
 TEST(Relocalizer, FindsAFrameWithoutDepth) {
-  const Landmarks landmarks = room(4);
+  const Landmarks landmarks = filledRoom(4);
   const KnownRoom known(landmarks);
   LoopKeyFrame frame = lostAt(landmarks, at(0.2));
   std::fill(frame.points.depth.begin(), frame.points.depth.end(), 0.0f);
@@ -130,7 +128,7 @@ TEST(Relocalizer, FindsAFrameWithoutDepth) {
 
 // A person covers two thirds of the view.
 TEST(Relocalizer, FindsAFrameThatSeesLittle) {
-  const Landmarks landmarks = room(5);
+  const Landmarks landmarks = filledRoom(5);
   const KnownRoom known(landmarks);
   const LoopKeyFrame all = lostAt(landmarks, at(0.2));
   LoopKeyFrame frame;
@@ -147,8 +145,8 @@ TEST(Relocalizer, FindsAFrameThatSeesLittle) {
 }
 
 TEST(Relocalizer, AnUnknownRoomIsNotFound) {
-  const KnownRoom known(room(6));
-  const RelocalizationResult result = known.find(lostAt(room(7), at(0.0)));
+  const KnownRoom known(filledRoom(6));
+  const RelocalizationResult result = known.find(lostAt(filledRoom(7), at(0.0)));
   EXPECT_FALSE(result.camera_from_world);
   EXPECT_EQ(result.method, RelocalizationMethod::kNone);
   EXPECT_TRUE(result.matches.empty());
@@ -157,9 +155,9 @@ TEST(Relocalizer, AnUnknownRoomIsNotFound) {
 
 // Looks the same, point by point, but the points are elsewhere.
 TEST(Relocalizer, ARoomThatOnlyLooksAlikeIsNotFound) {
-  const Landmarks landmarks = room(8);
+  const Landmarks landmarks = filledRoom(8);
   const KnownRoom known(landmarks);
-  Landmarks other = room(9);
+  Landmarks other = filledRoom(9);
   for (std::size_t i = 0; i < other.size(); ++i) {
     other[i].descriptor = landmarks[i].descriptor;
   }
@@ -177,8 +175,8 @@ TEST(Relocalizer, APosterThatHangsInTwoPlacesDoesNotFoolIt) {
   constexpr int kOnWall = 700;  // some 700 key points in the image, as ORB has them
   for (const int on_poster : {60, 120, 250, 500}) {
     for (const Places& places :
-         {Places{withPoster(room(31), {-0.4, 0.2, 2.4}, on_poster),
-                 withPoster(room(32), {0.3, -0.2, 2.2}, on_poster)},
+         {Places{withPoster(filledRoom(31), {-0.4, 0.2, 2.4}, on_poster),
+                 withPoster(filledRoom(32), {0.3, -0.2, 2.2}, on_poster)},
           Places{withPoster(pictureWall(33, kOnWall), {-0.4, 0.2, 2.4}, on_poster),
                  withPoster(pictureWall(34, kOnWall), {0.2, 0.0, 2.4}, on_poster)}}) {
       const KnownRoom known(places.known);
@@ -198,7 +196,7 @@ TEST(Relocalizer, APosterThatHangsInTwoPlacesDoesNotFoolIt) {
 
 // People cover two thirds of the image: what is behind them is not seen, and denies nothing.
 TEST(Relocalizer, WhatIsHiddenIsNoContradiction) {
-  const Landmarks landmarks = room(35);
+  const Landmarks landmarks = filledRoom(35);
   const KnownRoom known(landmarks);
   const LoopKeyFrame all = lostAt(landmarks, at(0.1));
   LoopKeyFrame some;
@@ -225,7 +223,7 @@ TEST(Relocalizer, WhatIsHiddenIsNoContradiction) {
 }
 
 TEST(Relocalizer, NothingIsFoundInAnEmptyMapOrByAnEmptyFrame) {
-  const Landmarks landmarks = room(10);
+  const Landmarks landmarks = filledRoom(10);
   const KnownRoom nothing(landmarks, 0);
   EXPECT_FALSE(nothing.find(lostAt(landmarks, at(0.0))).camera_from_world);
   EXPECT_EQ(nothing.find(lostAt(landmarks, at(0.0))).tried, 0U);
@@ -236,7 +234,7 @@ TEST(Relocalizer, NothingIsFoundInAnEmptyMapOrByAnEmptyFrame) {
 
 // The map may have culled key frames of which the index still knows.
 TEST(Relocalizer, KeyFramesThatAreGoneArePassedOver) {
-  const Landmarks landmarks = room(11);
+  const Landmarks landmarks = filledRoom(11);
   KnownRoom known(landmarks);
   const LoopKeyFrame frame = lostAt(landmarks, at(0.25));
   const std::size_t best = known.find(frame).key_frame;
@@ -249,7 +247,7 @@ TEST(Relocalizer, KeyFramesThatAreGoneArePassedOver) {
 }
 
 TEST(Relocalizer, DegeneratePointsFindNothing) {
-  const Landmarks landmarks = room(12);
+  const Landmarks landmarks = filledRoom(12);
   const KnownRoom known(landmarks);
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   LoopKeyFrame nowhere = lostAt(landmarks, at(0.0));
@@ -270,7 +268,7 @@ TEST(Relocalizer, DegeneratePointsFindNothing) {
 }
 
 TEST(Relocalizer, TheSameFrameGivesTheSamePoseBitForBit) {
-  const Landmarks landmarks = room(13);
+  const Landmarks landmarks = filledRoom(13);
   const KnownRoom known(landmarks);
   LoopKeyFrame frame = lostAt(landmarks, at(0.2));
   EXPECT_EQ(known.find(frame).camera_from_world->matrix(),
@@ -281,7 +279,7 @@ TEST(Relocalizer, TheSameFrameGivesTheSamePoseBitForBit) {
 }
 
 TEST(Relocalizer, MistakesAreNamed) {
-  const Landmarks landmarks = room(14);
+  const Landmarks landmarks = filledRoom(14);
   KnownRoom known(landmarks);
   const LoopKeyFrame frame = lostAt(landmarks, at(0.0));
   RelocalizerOptions options;

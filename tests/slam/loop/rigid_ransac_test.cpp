@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "invalid_argument.hpp"
+#include "loop/place_scene.hpp"
 #include "random.hpp"
 
 namespace hmcdyn::slam {
@@ -19,20 +20,14 @@ namespace {
 
 using hmcdyn::test::invalidArgumentOf;
 using hmcdyn::test::Random;
+using test::motionOf;
 
-const PinholeCamera kLens{500.0, 500.0, 320.0, 240.0};
-
-Eigen::Isometry3d motionOf(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation) {
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
-  motion.translation() = translation;
-  return motion;
-}
+const PinholeCamera kRoundLens{500.0, 500.0, 320.0, 240.0};
 
 const Eigen::Isometry3d kMotion = motionOf({0.1, -0.3, 0.2}, {0.4, -0.1, 0.25});
 
 SightedPoint sight(const Eigen::Vector3d& point, double sigma = 1.0) {
-  const Eigen::Vector2d pixel = kLens.project(point);
+  const Eigen::Vector2d pixel = kRoundLens.project(point);
   return {pixel.x(), pixel.y(), point.z(), sigma};
 }
 
@@ -61,7 +56,7 @@ SightedPair wrongPair(Random& random, const Eigen::Isometry3d& to_from) {
   while (true) {
     const Eigen::Vector3d from = anywhere(random);
     const Eigen::Vector3d to = anywhere(random);
-    if ((kLens.project(to_from * from) - kLens.project(to)).norm() > 50.0) {
+    if ((kRoundLens.project(to_from * from) - kRoundLens.project(to)).norm() > 50.0) {
       return {sight(from), sight(to)};
     }
   }
@@ -72,7 +67,7 @@ double distanceOf(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }
 
 void expectRefused(const std::vector<SightedPair>& pairs, std::size_t usable) {
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   EXPECT_FALSE(result.found);
   EXPECT_EQ(result.usable, usable);
   EXPECT_EQ(result.inliers, 0U);
@@ -90,7 +85,7 @@ TEST(RigidRansac, RecoversTheMotionExactlyAmongSixtyPercentWrongPairs) {
       pairs.push_back(right.back() != 0 ? exactPair(anywhere(random), kMotion)
                                         : wrongPair(random, kMotion));
     }
-    const RigidRansacResult result = rigidRansac(pairs, kLens);
+    const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
     ASSERT_TRUE(result.found) << "seed " << seed;
     EXPECT_LT(distanceOf(result.to_from, kMotion), 1e-9) << "seed " << seed;
     EXPECT_EQ(result.inlier, right) << "seed " << seed;
@@ -103,7 +98,7 @@ TEST(RigidRansac, RecoversTheMotionExactlyAmongSixtyPercentWrongPairs) {
 TEST(RigidRansac, RecoversHalfATurn) {
   Random random(3);
   const Eigen::Isometry3d turned = motionOf({0.0, 0.0, 3.14159265358979}, {0.2, 0.1, 0.0});
-  const RigidRansacResult result = rigidRansac(exactPairs(random, 50, turned), kLens);
+  const RigidRansacResult result = rigidRansac(exactPairs(random, 50, turned), kRoundLens);
   ASSERT_TRUE(result.found);
   EXPECT_LT(distanceOf(result.to_from, turned), 1e-9);
   EXPECT_EQ(result.inliers, 50U);
@@ -118,7 +113,7 @@ TEST(RigidRansac, AWallGivesARotationAndNoReflection) {
     point.z() = 2.0;
     pairs.push_back(exactPair(point, kMotion));
   }
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   ASSERT_TRUE(result.found);
   EXPECT_NEAR(result.to_from.linear().determinant(), 1.0, 1e-9);
   EXPECT_LT(distanceOf(result.to_from, kMotion), 1e-9);
@@ -131,7 +126,7 @@ TEST(RigidRansac, AMirrorImageIsNoMotion) {
     const Eigen::Vector3d point = anywhere(random);
     pairs.push_back({sight(point), sight({-point.x(), point.y(), point.z()})});
   }
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   EXPECT_LT(result.inliers, 15U);
 }
 
@@ -139,7 +134,7 @@ TEST(RigidRansac, ThreePairsAreEnough) {
   const std::vector<SightedPair> pairs = {exactPair({0.0, 0.0, 2.0}, kMotion),
                                           exactPair({0.8, 0.0, 2.5}, kMotion),
                                           exactPair({0.0, 0.7, 3.0}, kMotion)};
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   ASSERT_TRUE(result.found);
   EXPECT_EQ(result.inliers, 3U);
   EXPECT_LT(distanceOf(result.to_from, kMotion), 1e-9);
@@ -189,7 +184,7 @@ TEST(RigidRansac, PairsThatAreNotFiniteAreLeftOutAndTheOthersCount) {
   for (const std::size_t i : {3U, 11U, 17U, 20U}) {
     usable[i] = 0;
   }
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   ASSERT_TRUE(result.found);
   EXPECT_EQ(result.usable, 26U);
   EXPECT_EQ(result.inlier, usable);
@@ -202,7 +197,7 @@ TEST(RigidRansac, AbsurdPixelsDoNoHarm) {
   for (std::size_t i = 0; i < 10; ++i) {
     pairs[i].to.u = 1e300;
   }
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   EXPECT_EQ(result.inliers, 20U);
   EXPECT_LT(distanceOf(result.to_from, kMotion), 1e-9);
 }
@@ -214,7 +209,7 @@ TEST(RigidRansac, PairsWithoutACommonMotionFindFewWhoAgree) {
     const Eigen::Vector3d from = anywhere(random);
     pairs.push_back({sight(from), sight(anywhere(random))});
   }
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   EXPECT_LT(result.inliers, 15U);
   EXPECT_EQ(result.iterations, RigidRansacOptions{}.max_iterations);
 }
@@ -229,7 +224,7 @@ bool agrees(const SightedPair& last,
     pairs.push_back(exactPair(anywhere(random), to_from, sigma));
   }
   pairs.push_back(last);
-  const RigidRansacResult result = rigidRansac(pairs, kLens);
+  const RigidRansacResult result = rigidRansac(pairs, kRoundLens);
   EXPECT_EQ(result.inliers, 200U + result.inlier.back());
   return result.inlier.back() != 0;
 }
@@ -281,16 +276,16 @@ TEST(RigidRansac, TheSameSeedGivesTheSameResultBitForBit) {
     pairs.back().to.v += random.normal(1.0);
   }
   RigidRansacOptions options;
-  const RigidRansacResult first = rigidRansac(pairs, kLens, options);
-  const RigidRansacResult second = rigidRansac(pairs, kLens, options);
+  const RigidRansacResult first = rigidRansac(pairs, kRoundLens, options);
+  const RigidRansacResult second = rigidRansac(pairs, kRoundLens, options);
   EXPECT_EQ(first.to_from.matrix(), second.to_from.matrix());
   EXPECT_EQ(first.inlier, second.inlier);
   EXPECT_EQ(first.iterations, second.iterations);
   // The seed is what is drawn with: without refits another one ends elsewhere.
   options.refits = 0;
-  const RigidRansacResult one = rigidRansac(pairs, kLens, options);
+  const RigidRansacResult one = rigidRansac(pairs, kRoundLens, options);
   options.seed = 2;
-  const RigidRansacResult other = rigidRansac(pairs, kLens, options);
+  const RigidRansacResult other = rigidRansac(pairs, kRoundLens, options);
   EXPECT_GT(distanceOf(one.to_from, other.to_from), 0.0);
 }
 
@@ -305,10 +300,10 @@ TEST(RigidRansac, RefitsAverageTheNoise) {
     pair.to.depth += random.normal(0.001 + 1.425e-3 * pair.to.depth * pair.to.depth);
   }
   RigidRansacOptions options;
-  const double error = distanceOf(rigidRansac(pairs, kLens, options).to_from, kMotion);
+  const double error = distanceOf(rigidRansac(pairs, kRoundLens, options).to_from, kMotion);
   options.refits = 0;
   EXPECT_LT(error, 0.006);
-  EXPECT_LT(error, 0.7 * distanceOf(rigidRansac(pairs, kLens, options).to_from, kMotion));
+  EXPECT_LT(error, 0.7 * distanceOf(rigidRansac(pairs, kRoundLens, options).to_from, kMotion));
 }
 
 TEST(RigidRansac, MistakesAreNamed) {
@@ -317,7 +312,7 @@ TEST(RigidRansac, MistakesAreNamed) {
   const auto messageOf = [&](const auto& change) {
     RigidRansacOptions options;
     change(options);
-    return invalidArgumentOf([&] { rigidRansac(pairs, kLens, options); });
+    return invalidArgumentOf([&] { rigidRansac(pairs, kRoundLens, options); });
   };
   EXPECT_EQ(messageOf([](auto& o) { o.confidence = 1.5; }),
             "options.confidence is 1.500000, expected 0..1");
@@ -333,7 +328,7 @@ TEST(RigidRansac, MistakesAreNamed) {
             }),
             "camera.fx is 0.000000, expected finite and > 0");
   pairs[2].to.sigma = 0.0;
-  EXPECT_EQ(invalidArgumentOf([&] { rigidRansac(pairs, kLens); }),
+  EXPECT_EQ(invalidArgumentOf([&] { rigidRansac(pairs, kRoundLens); }),
             "pairs[2].to.sigma is 0.000000, expected finite and > 0");
 }
 

@@ -18,15 +18,9 @@ using test::BundleScene;
 using test::disturbed;
 using test::largestPoseError;
 using test::makeBundleScene;
+using test::thorough;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-BundleOptions thorough() {
-  BundleOptions options;
-  options.max_iterations = 50;
-  options.function_tolerance = 1e-12;
-  return options;
-}
 
 TEST(BundleInput, NothingAtAllIsNothingToDo) {
   BundleProblem problem;

@@ -21,15 +21,9 @@ using test::largestPoseError;
 using test::makeBundleScene;
 using test::moved;
 using test::poseDistance;
+using test::thorough;
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-BundleOptions thorough() {
-  BundleOptions options;
-  options.max_iterations = 100;
-  options.function_tolerance = 1e-14;
-  return options;
-}
 
 BundleMotion motionBetween(const BundleProblem& problem, int from, int to, double sigma) {
   BundleMotion motion;

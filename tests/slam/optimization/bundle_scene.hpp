@@ -110,4 +110,12 @@ inline double largestPoseError(const std::vector<Eigen::Isometry3d>& poses,
   return largest;
 }
 
+/// Goes on until nothing changes any more.
+inline BundleOptions thorough() {
+  BundleOptions options;
+  options.max_iterations = 100;
+  options.function_tolerance = 1e-14;
+  return options;
+}
+
 }  // namespace hmcdyn::slam::test

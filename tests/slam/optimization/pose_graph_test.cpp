@@ -230,17 +230,17 @@ TEST(PoseGraphCost, DerivativesAgreeWithCentralDifferences) {
     ASSERT_TRUE(cost.Evaluate(parameters.data(), value.data(), jacobians.data()));
     for (const std::size_t block : {0U, 1U}) {
       for (int k = 0; k < 6; ++k) {
-        constexpr double kStep = 1e-6;
+        constexpr double kDelta = 1e-6;
         std::array<Eigen::Matrix<double, 6, 1>, 2> values;
         for (const std::size_t side : {0U, 1U}) {
           Eigen::Matrix<double, 6, 1> delta = Eigen::Matrix<double, 6, 1>::Zero();
-          delta(k) = side == 0 ? -kStep : kStep;
+          delta(k) = side == 0 ? -kDelta : kDelta;
           std::array<PoseVector, 2> stepped = poses;
           Se3Manifold().Plus(poses.at(block).data(), delta.data(), stepped.at(block).data());
           const std::array<const double*, 2> at{stepped[0].data(), stepped[1].data()};
           ASSERT_TRUE(cost.Evaluate(at.data(), values.at(side).data(), nullptr));
         }
-        const Eigen::Matrix<double, 6, 1> numeric = (values[1] - values[0]) / (2.0 * kStep);
+        const Eigen::Matrix<double, 6, 1> numeric = (values[1] - values[0]) / (2.0 * kDelta);
         EXPECT_LT((analytic.at(block).col(k) - numeric).norm(), 1e-7) << turn << block << k;
       }
       EXPECT_EQ(analytic.at(block).col(6).norm(), 0.0);

@@ -14,20 +14,17 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include "file_content.hpp"
 #include "slam/dataset/temporary_folder.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
 namespace fs = std::filesystem;
+using test::contentOf;
 using test::mentions;
 using test::messageOf;
 using test::TemporaryFolder;
-
-std::string contentOf(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 /// A camera at (x, 0, 0) that looks along z.
 StampedPose keyFrameAt(double timestamp, double x) {

@@ -17,10 +17,13 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include "file_content.hpp"
+
 namespace hmcdyn::slam {
 namespace {
 
 namespace fs = std::filesystem;
+using test::contentOf;
 
 /// A fresh folder that is removed at the end.
 class RunFolderTest : public ::testing::Test {
@@ -40,13 +43,6 @@ class RunFolderTest : public ::testing::Test {
  private:
   fs::path folder_;
 };
-
-std::string contentOf(const fs::path& path) {
-  std::ifstream stream(path);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return content.str();
-}
 
 std::vector<std::string> linesOf(const fs::path& path) {
   std::istringstream stream(contentOf(path));

@@ -1,38 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hmcdyn_slam as a user meets it: a process with exit codes and messages.
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include "dataset/temporary_folder.hpp"
+#include "pipeline/shell.hpp"
 #include "pipeline/toy_sequence.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
-struct Outcome {
-  int exit_code = -1;
-  std::string text;  ///< Standard output and error.
-};
+using test::Outcome;
 
 Outcome runBinary(const std::string& arguments) {
-  const std::string command = std::string(HMCDYN_SLAM) + " " + arguments + " 2>&1";
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) {
-    return outcome;
-  }
-  std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) {
-    outcome.text += buffer.data();
-  }
-  outcome.exit_code = WEXITSTATUS(pclose(pipe));
-  return outcome;
+  return test::runShell(std::string(HMCDYN_SLAM) + " " + arguments);
 }
 
 class Binary : public testing::Test {

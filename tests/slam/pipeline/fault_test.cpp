@@ -3,7 +3,6 @@
 // are counted and named; what was computed is on disk.
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -16,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "dataset/temporary_folder.hpp"
+#include "file_content.hpp"
 #include "pipeline/toy_sequence.hpp"
 #include "slam/detection/detector.hpp"
 #include "slam/pipeline/options.hpp"
@@ -24,6 +24,7 @@
 namespace hmcdyn::slam {
 namespace {
 
+using hmcdyn::test::contentOf;
 using test::ToySequence;
 using test::toyStamp;
 using test::writeToySequence;
@@ -83,11 +84,6 @@ void expectLost(const nlohmann::json& summary, const std::vector<std::string>& s
     named.push_back(fmt::format("{:.6f}", stamp.get<double>()));
   }
   EXPECT_EQ(named, lost);
-}
-
-std::string contentOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 double worstError(const nlohmann::json& summary) {

@@ -1,47 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A disk that fills while hmcdyn_slam writes: it says so, exits with 1, and keeps what it had.
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 #include "dataset/temporary_folder.hpp"
+#include "file_content.hpp"
+#include "pipeline/shell.hpp"
 #include "pipeline/toy_sequence.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
-struct Outcome {
-  int exit_code = -1;
-  std::string text;  ///< Standard output and error.
-};
-
-Outcome runShell(const std::string& command) {
-  Outcome outcome;
-  FILE* pipe = popen(("{ " + command + "; } 2>&1").c_str(), "r");
-  if (pipe == nullptr) {
-    return outcome;
-  }
-  std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) {
-    outcome.text += buffer.data();
-  }
-  outcome.exit_code = WEXITSTATUS(pclose(pipe));
-  return outcome;
-}
-
-std::string contentOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using hmcdyn::test::contentOf;
+using test::Outcome;
+using test::runShell;
 
 class FullDisk : public testing::Test {
  protected:

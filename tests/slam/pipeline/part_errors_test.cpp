@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include <opencv2/core.hpp>
 
 #include "dataset/temporary_folder.hpp"
+#include "file_content.hpp"
 #include "invalid_argument.hpp"
 #include "pipeline/toy_sequence.hpp"
 #include "slam/pipeline/dense_mapper.hpp"
@@ -58,8 +58,7 @@ class RunWithErrors : public testing::Test {
   }
 
   std::string contentOf(const std::string& file) const {
-    std::ifstream stream(folder_.path() / "out" / file);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return hmcdyn::test::contentOf(folder_.path() / "out" / file);
   }
 
   /// All results are there, the summary as it was returned, with one part that failed.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,22 +12,17 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "dataset/temporary_folder.hpp"
+#include "file_content.hpp"
 #include "pipeline/toy_sequence.hpp"
 #include "slam/pipeline/options.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
+using hmcdyn::test::contentOf;
 using hmcdyn::test::TemporaryFolder;
 using test::ToySequence;
 using test::writeToySequence;
-
-std::string contentOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::stringstream content;
-  content << stream.rdbuf();
-  return content.str();
-}
 
 std::size_t linesIn(const std::filesystem::path& file) {
   const std::string content = contentOf(file);
