@@ -2,7 +2,6 @@
 // Properties of the density clustering over random inputs, and its agreement with the textbook's.
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hmcdyn_slam as a user meets it: a process with exit codes and messages.
-#include <cstdlib>
 #include <fstream>
 #include <string>
 
