@@ -55,7 +55,14 @@ if ((${#files[@]} == 0)); then
   if [[ -n $since ]]; then
     changed=$(git diff --name-only --diff-filter=d "$since" -- '*.cpp' '*.hpp') ||
       usage_error "--since is '$since', which git does not know"
-    mapfile -t files < <(grep -vE '^(tests|bench|fuzz)/' <<<"$changed" | sed -n "s|^.|$ROOT/&|p")
+    mapfile -t sources < <(grep -E '^(src|examples)/.*\.cpp$' <<<"$changed")
+    files=("${sources[@]/#/$ROOT/}")
+    # A header by itself where none of these sources shows it.
+    while read -r header; do
+      if ! grep -qsE "^#include [\"<]${header#*/}[\">]" "${sources[@]}" /dev/null; then
+        files+=("$ROOT/$header")
+      fi
+    done < <(grep -E '^(src|examples|include)/.*\.hpp$' <<<"$changed")
     if ((${#files[@]} == 0)); then
       echo "clang-tidy: no source of the library or the examples changed since $since"
       exit 0
