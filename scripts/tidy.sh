@@ -88,7 +88,7 @@ fingerprint() {
   # A header has no command of its own; clang-tidy takes a neighbour's.
   [[ -n $command ]] || return
   {
-    echo "$VERSION"
+    echo "$VERSION $command"
     cat "$ROOT/.clang-tidy"
     (cd "$BUILD" && eval "$command")
   } | sha256sum | cut -d' ' -f1

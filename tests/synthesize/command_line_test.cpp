@@ -7,13 +7,14 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include "file_content.hpp"
 #include "synthesize/scene_catalog.hpp"
 #include "test_scenes.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
 
-using test::readAll;
+using hmcdyn::test::contentOf;
 using test::TemporaryFolder;
 
 struct Outcome {
@@ -26,7 +27,7 @@ Outcome run(const TemporaryFolder& folder, const std::string& arguments) {
   const std::string command =
       std::string("'") + HMCDYN_SYNTHESIZE + "' " + arguments + " > '" + log.string() + "' 2>&1";
   const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): a test of the binary
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(log)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contentOf(log)};
 }
 
 bool contains(const std::string& text, const std::string& part) {

@@ -10,20 +10,21 @@
 #include <opencv2/imgcodecs.hpp>
 #include <yaml-cpp/yaml.h>
 
+#include "file_content.hpp"
 #include "test_scenes.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
 
 namespace fs = std::filesystem;
-using test::readAll;
+using hmcdyn::test::contentOf;
 using test::shortSequence;
 using test::TemporaryFolder;
 
 /// Lines without comments.
 std::vector<std::string> linesOf(const fs::path& path) {
   std::vector<std::string> lines;
-  std::istringstream text(readAll(path));
+  std::istringstream text(contentOf(path));
   for (std::string line; std::getline(text, line);) {
     if (!line.empty() && line[0] != '#') {
       lines.push_back(line);
@@ -101,8 +102,8 @@ TEST(Sequence, AnotherSeedGivesOtherBytes) {
   options.output = folder / "two";
   options.seed = 2;
   writeSequence(options);
-  EXPECT_NE(readAll(folder / "one/rgb/1700000000.000000.png"),
-            readAll(folder / "two/rgb/1700000000.000000.png"));
+  EXPECT_NE(contentOf(folder / "one/rgb/1700000000.000000.png"),
+            contentOf(folder / "two/rgb/1700000000.000000.png"));
 }
 
 struct Box {

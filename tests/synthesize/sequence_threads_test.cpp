@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "file_content.hpp"
 #include "synthesize/sequence.hpp"
 #include "test_scenes.hpp"
 
@@ -13,15 +14,15 @@ namespace hmcdyn::synthesize {
 namespace {
 
 namespace fs = std::filesystem;
-using test::readAll;
+using hmcdyn::test::contentOf;
 using test::shortSequence;
 using test::TemporaryFolder;
 
-std::map<std::string, std::string> contentOf(const fs::path& folder) {
+std::map<std::string, std::string> filesOf(const fs::path& folder) {
   std::map<std::string, std::string> content;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) {
-      content[fs::relative(entry.path(), folder).string()] = readAll(entry.path());
+      content[fs::relative(entry.path(), folder).string()] = contentOf(entry.path());
     }
   }
   return content;
@@ -37,8 +38,8 @@ TEST(Sequence, SameSeedGivesTheSameBytesWhateverTheThreads) {
   options.output = folder / "three";
   options.threads = 3;
   writeSequence(options);
-  const auto one = contentOf(folder / "one");
-  const auto three = contentOf(folder / "three");
+  const auto one = filesOf(folder / "one");
+  const auto three = filesOf(folder / "three");
   ASSERT_EQ(one.size(), 3U * 3U + 6U);
   ASSERT_EQ(one.size(), three.size());
   for (const auto& [name, bytes] : one) {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "file_content.hpp"
 #include "slam/dataset/temporary_folder.hpp"
 #include "slam/report/report.hpp"
 #include "slam/report/sample_run.hpp"
@@ -18,12 +18,8 @@
 namespace hmcdyn::slam {
 namespace {
 
+using hmcdyn::test::contentOf;
 using test::sampleRun;
-
-std::string contentOf(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 /// The browser's name; empty where none is installed.
 std::string browser() {
