@@ -285,7 +285,7 @@ cv::Mat ourFundamental(const RealFrame& frame) {
     u.push_back(frame.current[i].x);
     v.push_back(frame.current[i].y);
   }
-  const MotionModelEstimate estimate = estimateMotionModel({earlier_u, earlier_v, u, v}, {});
+  const TwoViewEstimate estimate = estimateTwoViewModel({earlier_u, earlier_v, u, v}, {});
   cv::Mat f;
   if (estimate.model.kind == TwoViewModelKind::kFundamental) {
     f.create(3, 3, CV_64F);

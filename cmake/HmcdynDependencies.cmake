@@ -2,7 +2,11 @@
 # Dependencies of the library itself; examples, tests and benches ask for theirs where they use them.
 # The same versions stand in hmcdynConfig.cmake.in, which asks for them in a user's project.
 
-find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+# Without a version: asked for 3.3, Eigen 5 says that it is another major version, and its headers do.
+find_package(Eigen3 REQUIRED NO_MODULE)
+if(Eigen3_VERSION VERSION_LESS 3.3)
+  message(FATAL_ERROR "hmcdyn: Eigen ${Eigen3_VERSION} in ${Eigen3_DIR} is older than 3.3")
+endif()
 find_package(nanoflann 1.3 REQUIRED)
 
 # hmcdyn_require(OPTION PACKAGE ARGUMENTS...): a package that one component needs, and the option that

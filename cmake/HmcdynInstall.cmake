@@ -69,8 +69,8 @@ include(HmcdynPkgConfig)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/hmcdyn" COMPONENT core_dev)
 
-set(HMCDYN_TOOLS hmcdyn_slam hmcdyn_evaluate hmcdyn_synthesize hmcdyn_label_score hmcdyn_map_score
-                 hmcdyn_tables)
+set(HMCDYN_TOOLS hmcdyn_slam hmcdyn_evaluate hmcdyn_synthesize hmcdyn_label_score hmcdyn_mask
+                 hmcdyn_mask_score hmcdyn_map_score hmcdyn_tables hmcdyn_calibrate_depth)
 if(HMCDYN_BUILD_EXAMPLES AND HMCDYN_COMPLETE)
   install(TARGETS ${HMCDYN_TOOLS} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT tools)
 endif()

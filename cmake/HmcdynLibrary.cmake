@@ -8,6 +8,8 @@ set(HMCDYN_CORE_HEADERS
     version.hpp
     span.hpp
     types.hpp
+    plain_matrix.hpp
+    pose.hpp
     epipolar.hpp
     ego_motion.hpp
     box_dynamism.hpp
@@ -17,8 +19,10 @@ set(HMCDYN_CORE_HEADERS
     weights.hpp
     peer_rules.hpp
     filter_stage.hpp
+    depth_error.hpp
     surface_depth.hpp
     motion_belief.hpp
+    belief_verdict.hpp
     detail/bit_set_clusters.hpp
     detail/bits.hpp
     detail/clustering_result.hpp
@@ -29,10 +33,18 @@ set(HMCDYN_CORE_HEADERS
     detail/laned_sum.hpp
     detail/minkowski.hpp
     detail/planar_points.hpp
+    detail/requirements.hpp
     detail/union_find.hpp)
 set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp label_image.hpp
-                          dynamic_feature_filter.hpp)
+                          dynamic_feature_filter.hpp motion_mask.hpp box_carrier.hpp compact.hpp
+                          frame_filter.hpp)
 set(HMCDYN_OPTIMIZATION_HEADERS pose_refinement.hpp)
+
+# The compiled components see Eigen by another name: no function of theirs that works on Eigen's types has the
+# name of one in a user's program, where the linker would take the user's copy for both. That one may have been
+# compiled with other flags, under which Eigen expects another alignment and frees memory in another way. Nothing
+# in the interface of these components is Eigen's. Tests of what lies below it need the name, too.
+set(HMCDYN_EIGEN_OF_THE_LIBRARY Eigen=hmcdyn_eigen)
 
 # hmcdyn_component(NAME TARGET): what every component's target shares, built or installed.
 function(hmcdyn_component name target)
@@ -57,12 +69,22 @@ set(HMCDYN_COMPONENTS core)
 if(HMCDYN_WITH_VISION)
   add_library(
     hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/flow_selection.cpp
-                  src/fundamental.cpp src/label_image.cpp src/frame_regions.cpp
-                  src/dynamic_feature_filter.cpp)
+                  src/fundamental.cpp src/label_image.cpp src/frame_regions.cpp src/camera_motion.cpp src/frame_camera.cpp
+                  src/dynamic_feature_filter.cpp src/frame_filter/box_carrier.cpp
+                  src/frame_filter/decision.cpp src/frame_filter/features.cpp
+                  src/frame_filter/frame_filter.cpp src/frame_filter/history.cpp
+                  src/frame_filter/input.cpp
+                  src/frame_filter/mask_verdict.cpp src/frame_filter/options.cpp
+                  src/mask/departure.cpp src/mask/depth_history.cpp src/mask/evidence.cpp
+                  src/mask/motion_mask.cpp src/mask/named.cpp src/mask/options.cpp
+                  src/mask/small_frame.cpp src/mask/smoothing.cpp src/mask/thing_motion.cpp
+                  src/mask/things.cpp src/mask/whole_mask.cpp)
+  target_include_directories(hmcdyn_vision PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_link_libraries(
     hmcdyn_vision
     PUBLIC hmcdyn_core opencv_core
     PRIVATE opencv_imgproc opencv_video opencv_calib3d $<BUILD_INTERFACE:hmcdyn_warnings>)
+  target_compile_definitions(hmcdyn_vision PRIVATE ${HMCDYN_EIGEN_OF_THE_LIBRARY})
   hmcdyn_component(vision hmcdyn_vision)
   list(APPEND HMCDYN_COMPONENTS vision)
 endif()
@@ -80,6 +102,7 @@ if(HMCDYN_WITH_OPTIMIZATION)
     hmcdyn_optimization
     PUBLIC hmcdyn_core
     PRIVATE ${CERES_LIBRARIES} $<BUILD_INTERFACE:hmcdyn_warnings>)
+  target_compile_definitions(hmcdyn_optimization PRIVATE ${HMCDYN_EIGEN_OF_THE_LIBRARY})
   hmcdyn_component(optimization hmcdyn_optimization)
   list(APPEND HMCDYN_COMPONENTS optimization)
 endif()

@@ -33,8 +33,11 @@ if(HMCDYN_AWK AND NOT CMAKE_CROSSCOMPILING)
   hmcdyn_man_page(hmcdyn_evaluate "both errors and the tracking rate" summary)
   hmcdyn_man_page(hmcdyn_synthesize "render dynamic RGB-D sequences with exact ground truth")
   hmcdyn_man_page(hmcdyn_label_score "score labels of key points against masks")
+  hmcdyn_man_page(hmcdyn_mask "write masks of what moves for an RGB-D recording")
+  hmcdyn_man_page(hmcdyn_mask_score "score masks of what moves against true ones")
   hmcdyn_man_page(hmcdyn_map_score "score a dense map against a rendered sequence")
   hmcdyn_man_page(hmcdyn_tables "write the tables of the HMC-SLAM paper from runs")
+  hmcdyn_man_page(hmcdyn_calibrate_depth "measure how wrong a depth camera is")
   add_custom_target(man ALL DEPENDS ${HMCDYN_MAN_PAGES})
 else()
   message(STATUS "hmcdyn: no manual pages, since awk was not found or the programs do not run here")
@@ -43,7 +46,8 @@ endif()
 if(HMCDYN_INSTALL)
   install(FILES ${HMCDYN_MAN_PAGES} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT tools)
   # bash-completion loads a file by the name of the program.
-  foreach(tool IN ITEMS slam evaluate synthesize label_score map_score tables)
+  foreach(tool IN ITEMS slam evaluate synthesize label_score map_score tables
+                  calibrate_depth)
     install(
       FILES "${PROJECT_SOURCE_DIR}/packaging/bash-completion/hmcdyn"
       DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# `cpack -G DEB` in the build folder: three Debian packages. hmcdyn-tools: the programs;
-# libhmcdyn-core-dev: the headers of core, without OpenCV or Ceres; libhmcdyn-dev: all the rest.
+# `cpack -G DEB` in the build folder: the Debian packages. hmcdyn-tools: the programs;
+# libhmcdyn-core-dev: the headers of core, without OpenCV or Ceres; libhmcdyn-dev: all the rest; where it is built,
+# python3-hmcdyn: the Python module.
 
 set(CPACK_PACKAGE_NAME hmcdyn)
 set(CPACK_PACKAGE_VENDOR "The hmcdyn authors")
@@ -16,6 +17,10 @@ if(HMCDYN_WITH_VISION OR HMCDYN_WITH_OPTIMIZATION)
 endif()
 if(HMCDYN_BUILD_EXAMPLES AND HMCDYN_COMPLETE)
   list(APPEND CPACK_COMPONENTS_ALL tools)
+endif()
+
+if(TARGET hmcdyn_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -44,5 +49,11 @@ set(CPACK_COMPONENT_TOOLS_DESCRIPTION "RGB-D SLAM, its evaluation and rendered s
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME hmcdyn-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
+
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "hmcdyn's Python module")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hmcdyn)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
 
 include(CPack)

@@ -85,7 +85,7 @@ int main() {
 
   // Steps 2 to 7, with matches of one's own.
   const hmcdyn::PointPairsView pairs{matches.u, matches.v, points.u, points.v};
-  const hmcdyn::MotionModelEstimate motion = hmcdyn::estimateMotionModel(pairs, boxes);
+  const hmcdyn::TwoViewEstimate motion = hmcdyn::estimateTwoViewModel(pairs, boxes);
   const std::vector<float> distance = hmcdyn::modelDistances(motion.model, pairs);
   hmcdyn::FilterStageWorkspace workspace;  // kept from frame to frame
   const hmcdyn::FilterStageResult& filtered =

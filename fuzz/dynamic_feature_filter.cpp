@@ -89,8 +89,8 @@ cv::Mat anyImage(FuzzedDataProvider& data, const cv::Size& size, const View& vie
 
 hmcdyn::DynamicFeatureFilterOptions anyOptions(FuzzedDataProvider& data) {
   hmcdyn::DynamicFeatureFilterOptions options;
-  options.motion.max_iterations = 50;  // so that a run is short
-  options.motion.min_background_matches = data.ConsumeIntegralInRange<int>(8, 40);
+  options.two_view.max_iterations = 50;  // so that a run is short
+  options.two_view.min_background_matches = data.ConsumeIntegralInRange<int>(8, 40);
   if (data.ConsumeBool()) {
     options.distance = static_cast<hmcdyn::DistanceKind>(data.ConsumeIntegralInRange<int>(0, 2));
     options.stage.rule = data.PickValueInArray(hmcdyn::kFilterRules);
@@ -102,7 +102,7 @@ hmcdyn::DynamicFeatureFilterOptions anyOptions(FuzzedDataProvider& data) {
     options.flow.window = data.ConsumeIntegralInRange<int>(2, 15);
     options.flow.max_level = data.ConsumeIntegralInRange<int>(-1, 4);
     options.flow.forward_backward = data.ConsumeBool();
-    options.motion.seed = data.ConsumeIntegral<std::uint8_t>();
+    options.two_view.seed = data.ConsumeIntegral<std::uint8_t>();
     options.ego_motion.baseline_fx = anyFloat(data, 0.0f, 60.0f);
   }
   return options;
@@ -178,9 +178,9 @@ void addEarlierFrames(FuzzedDataProvider& data, const cv::Size& size,
     earlier.age = static_cast<double>(anyFloat(data, 0.0f, 0.2f));
     if (data.ConsumeBool()) {
       earlier.depth = anyDepth(data, size);
-      earlier.current_from_earlier = Eigen::Isometry3d::Identity();
-      earlier.current_from_earlier->translation().x() =
-          static_cast<double>(anyFloat(data, -0.1f, 0.1f));
+      Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+      motion.translation().x() = static_cast<double>(anyFloat(data, -0.1f, 0.1f));
+      earlier.current_from_earlier = motion;
     }
     frame.earlier.push_back(earlier);
   }

@@ -16,8 +16,8 @@ using hmcdyn::fuzz::anyFloats;
 using hmcdyn::fuzz::require;
 using hmcdyn::fuzz::same;
 
-hmcdyn::MotionModelOptions anyOptions(FuzzedDataProvider& data) {
-  hmcdyn::MotionModelOptions options;
+hmcdyn::TwoViewOptions anyOptions(FuzzedDataProvider& data) {
+  hmcdyn::TwoViewOptions options;
   options.max_iterations = 50;  // so that a run is short
   if (data.ConsumeBool()) {
     options.min_matches = data.ConsumeIntegralInRange<int>(7, 20);
@@ -88,19 +88,19 @@ void measureEgoMotion(FuzzedDataProvider& data, const Pairs& pairs) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   FuzzedDataProvider data(bytes, size);
-  const hmcdyn::MotionModelOptions options = anyOptions(data);
+  const hmcdyn::TwoViewOptions options = anyOptions(data);
   const std::vector<hmcdyn::DetectionBox> boxes = hmcdyn::fuzz::anyBoxes(data, 3);
   const Pairs pairs = anyPairs(data);
   const std::size_t n = pairs.current_u.size();
   try {
-    const hmcdyn::MotionModelEstimate motion = estimateMotionModel(pairs.view(), boxes, options);
+    const hmcdyn::TwoViewEstimate motion = estimateTwoViewModel(pairs.view(), boxes, options);
     require(motion.matches <= n && motion.inliers <= motion.matches, "inliers are matches");
     require(
         !motion.fundamentalDefined() || motion.model.kind == hmcdyn::TwoViewModelKind::kFundamental,
         "where F is defined, it is the model");
     const std::vector<float> distance = modelDistances(motion.model, pairs.view());
     checkDistances(distance, n);
-    const hmcdyn::MotionModelEstimate again = estimateMotionModel(pairs.view(), boxes, options);
+    const hmcdyn::TwoViewEstimate again = estimateTwoViewModel(pairs.view(), boxes, options);
     require(same(modelDistances(again.model, pairs.view()), distance),
             "the same input and seed give the same model");
   } catch (const std::invalid_argument&) {  // as documented

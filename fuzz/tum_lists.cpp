@@ -25,7 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     folder.write("depth.txt", text.substr(cut + 3));
   }
   try {
-    const std::vector<hmcdyn::slam::FrameEntry> frames = hmcdyn::slam::listFrames(folder.path());
+    const hmcdyn::slam::FrameList list = hmcdyn::slam::readFrameList(folder.path());
+    const std::vector<hmcdyn::slam::FrameEntry>& frames = list.frames;
+    hmcdyn::fuzz::require(list.unit_seconds > 0.0, "a unit lasts");
     hmcdyn::fuzz::require(images && !frames.empty(), "a list has a frame");
     for (std::size_t i = 0; i < frames.size(); ++i) {
       hmcdyn::fuzz::require(frames[i].index == i, "frames are numbered");

@@ -12,7 +12,8 @@ makes a Debian 12 in the folder ROOT with debootstrap, where there is none yet, 
   1. installs libhmcdyn-core-dev, and builds and runs a user of core, without OpenCV;
   2. installs libhmcdyn-dev, and builds and runs a user of all components, with CMake and pkg-config;
   3. installs hmcdyn-tools, renders a short sequence, tracks it, and evaluates the trajectory;
-  4. removes the packages again.
+  4. where BUILD has -DHMCDYN_BUILD_PYTHON=ON, installs python3-hmcdyn, and draws labels on two images;
+  5. removes the packages again.
 About 3 GB.
 USAGE
   exit 2
@@ -27,6 +28,7 @@ mkdir "$root/packages"
 (cd "$build" && cpack -G DEB -B "$build/packages" >/dev/null)
 cp "$build"/packages/*.deb "$root/packages"
 cp -r tests/consumers "$root/consumers"
+cp examples/python/labels_on_two_images.py "$root"
 
 # shellcheck disable=SC2016 # the inner shell's variables
 chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euxc '
@@ -53,8 +55,15 @@ chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euxc '
   rm -rf /tmp/crowd /tmp/run
   hmcdyn_synthesize --scene crowd --frames 40 --quiet --output /tmp/crowd
   hmcdyn_slam --dataset /tmp/crowd --camera /tmp/crowd/calibration.yaml --detector file \
-    --boxes /tmp/crowd/boxes.txt --filter hmc --output /tmp/run --quiet
+    --boxes /tmp/crowd/boxes.txt --filter robust --output /tmp/run --quiet
   hmcdyn_evaluate summary --groundtruth /tmp/crowd/groundtruth.txt --estimate /tmp/run/trajectory.txt
+
+  if ls /packages/python3-hmcdyn_*.deb; then
+    install /packages/python3-hmcdyn_*.deb python3-matplotlib
+    python3 -c "import hmcdyn; print(hmcdyn.__version__)"
+    python3 /labels_on_two_images.py /tmp/labels.png && test -s /tmp/labels.png
+    apt-get -q -y purge python3-hmcdyn >/dev/null
+  fi
 
   apt-get -q -y purge --autoremove hmcdyn-tools libhmcdyn-dev libhmcdyn-core-dev >/dev/null
   if test -e /usr/include/hmcdyn || test -e /usr/bin/hmcdyn_slam; then echo "something stayed"; exit 1; fi'

@@ -8,7 +8,7 @@ usage() {
   cat <<USAGE
 Usage: ${0##*/} [--scene NAME] [--frames N] [--output DIR] [--no-install]
 
-Renders a sequence with people who walk, tracks the camera with --filter none and --filter hmc, and
+Renders a sequence with people who walk, tracks the camera with --filter none and --filter robust, and
 compares both with the exact truth.
 
   --scene NAME    scene to render (default: walking_xyz; hmcdyn_synthesize --list names all)
@@ -63,7 +63,7 @@ cmake --build --preset release --parallel "$(nproc)"
 echo "== Rendering $scene, $frames frames"
 "$bin/hmcdyn_synthesize" --scene "$scene" --frames "$frames" --output "$sequence" --overwrite
 
-for filter in none hmc; do
+for filter in none robust; do
   echo "== Tracking with --filter $filter"
   "$bin/hmcdyn_slam" --dataset "$sequence" --camera "$sequence/calibration.yaml" \
     --detector file --boxes "$sequence/boxes.txt" --filter "$filter" --annotate --write-keypoints \
@@ -72,15 +72,15 @@ done
 
 echo "== Comparing with the truth"
 "$bin/hmcdyn_evaluate" summary --groundtruth "$sequence/groundtruth.txt" \
-  --baseline "none=$output/none/trajectory.txt" --estimate "hmc=$output/hmc/trajectory.txt" \
+  --baseline "none=$output/none/trajectory.txt" --estimate "robust=$output/robust/trajectory.txt" \
   --associations "$sequence/associations.txt" --plot "$output/comparison.png" |
   tee "$output/comparison.txt"
 echo
 echo "Labels against the masks (people who move):"
-"$bin/hmcdyn_label_score" "$sequence:$output/hmc/keypoints.csv" | tee "$output/labels.txt"
+"$bin/hmcdyn_label_score" "$sequence:$output/robust/keypoints.csv" | tee "$output/labels.txt"
 echo
 echo "Time a frame (ms, mean):"
-for filter in none hmc; do
+for filter in none robust; do
   awk -F, -v name="$filter" '
     NR == 1 { for (i = 2; i <= NF; ++i) if ($i !~ /_cpu_ms$/) head[i] = $i }
     NR > 1 { for (i in head) sum[i] += $i; ++rows }
@@ -90,7 +90,7 @@ for filter in none hmc; do
       print ""
     }' "$output/$filter/timings.csv"
 done
-"$bin/hmcdyn_side_by_side" "$output/none/frames" "$output/hmc/frames" 4 "$output/frames.png"
+"$bin/hmcdyn_side_by_side" "$output/none/frames" "$output/robust/frames" 4 "$output/frames.png"
 echo
-echo "Open $output/hmc/report.html in a browser: the whole run on one page."
-echo "Look at $output/comparison.png (trajectories, error over time) and $output/frames.png (labels, filter off and on); all frames: $output/{none,hmc}/frames"
+echo "Open $output/robust/report.html in a browser: the whole run on one page."
+echo "Look at $output/comparison.png (trajectories, error over time) and $output/frames.png (labels, filter off and on); all frames: $output/{none,robust}/frames"

@@ -7,9 +7,9 @@ usage() {
   cat <<USAGE
 Usage: ${0##*/} [--seconds N] [--jobs N] [--no-build] [TARGET...]
 
-Builds the libFuzzer targets with AddressSanitizer and UndefinedBehaviorSanitizer and runs each, from
-the seeds in fuzz/corpus and what earlier runs found (build/fuzz/corpus). An input that breaks something
-is written to build/fuzz/found. Fails when there is one.
+Builds the libFuzzer targets with AddressSanitizer and UndefinedBehaviorSanitizer (preset asan-ubsan) and
+runs each, from the seeds in fuzz/corpus and what earlier runs found (build/fuzz/corpus). An input that
+breaks something is written to build/fuzz/found. Fails when there is one.
 
   --seconds N   how long each runs (default: 60)
   --jobs N      compile jobs, and targets that run, at a time (default: number of processors, $(nproc))
@@ -47,7 +47,7 @@ done
 ((${#chosen[@]} > 0)) || chosen=("${targets[@]}")
 
 if $build; then
-  cmake --preset fuzz >/dev/null
+  cmake --preset asan-ubsan >/dev/null
   cmake --build --preset fuzz --parallel "$jobs"
 fi
 
@@ -61,7 +61,7 @@ run() {
   local corpus=build/fuzz/corpus/$target log=build/fuzz/$target.log seeds=()
   mkdir -p "$corpus" build/fuzz/found
   [[ -d fuzz/corpus/$target ]] && seeds=("fuzz/corpus/$target")
-  build/fuzz/bin/fuzz_"$target" -max_total_time="$SECONDS_A_TARGET" -max_len=4096 -timeout=10 \
+  build/asan-ubsan/bin/fuzz_"$target" -max_total_time="$SECONDS_A_TARGET" -max_len=4096 -timeout=10 \
     -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="build/fuzz/found/$target-" \
     "$corpus" "${seeds[@]}" >"$log" 2>&1 || verdict=FAILED
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")

@@ -5,13 +5,14 @@ set -euo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--check] [--ci] [--bench] [--clang]
+Usage: ${0##*/} [--check] [--ci] [--python] [--bench] [--clang]
 
 Installs the packages that hmcdyn needs to be built and tested (Debian, Ubuntu). Does nothing where
 all are installed. Needs root or sudo; without either it says what to install and fails.
 
   --check   only list what is missing; exit code 1 when something is
-  --ci      also what .ci/run needs: clang-format, clang-tidy, Doxygen, and Chromium to open the report in
+  --ci      also what .ci/run needs: clang-format, clang-tidy, Doxygen, mold, Chromium for the report; --python
+  --python  also what the Python module and its tests need: pybind11, numpy, pytest, OpenCV, matplotlib
   --bench   also the peers that the benchmarks measure against: Open3D and PCL
   --clang   also clang, its sanitizers and its fuzzer: preset asan-ubsan, scripts/fuzz.sh
   --help    this text
@@ -27,11 +28,13 @@ packages=(
   libgtest-dev libgmock-dev      # the tests
   libbenchmark-dev               # the benchmarks
 )
+python=(pybind11-dev python3-dev python3-numpy python3-pytest python3-opencv python3-matplotlib)
 only_check=false
 for argument in "$@"; do
   case "$argument" in
     --check) only_check=true ;;
-    --ci) packages+=(clang-format clang-tidy chromium doxygen) ;;
+    --ci) packages+=(clang-format clang-tidy chromium doxygen mold "${python[@]}") ;;
+    --python) packages+=("${python[@]}") ;;
     --clang) packages+=(clang libclang-rt-14-dev) ;;
     --bench) packages+=(libopen3d-dev libpcl-dev python3) ;;
     --help | -h) usage && exit 0 ;;

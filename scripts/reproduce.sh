@@ -12,7 +12,7 @@ Usage: ${0##*/} (--datasets DIR | --rendered) [options] [-- OPTIONS OF hmcdyn_sl
   --rendered         rendered scenes instead; hmcdyn_synthesize makes those that are missing
   --sequences DIR    rendered: where the scenes lie, or will lie (default: OUTPUT/sequences)
   --scenes LIST      rendered: names with commas between (default: those named after the paper's)
-  --variants LIST    of hmc,rs,df,opw,none,two_threshold,chi2,depth_ransac (default: all)
+  --variants LIST    of hmc,robust,rs,df,opw,none,two_threshold,chi2,depth_ransac (default: all)
   --runs N           runs of each, with seeds 1 to N (default: 5)
   --jobs N           so many at once on each machine (default: the number of processors)
   --hosts LIST       machines for GNU parallel, with commas between; : is this one. All must see this
@@ -40,10 +40,8 @@ fail() {
 # The options of hmcdyn_slam that make a variant.
 variant_options() {
   case "$1" in
-    hmc) echo --filter hmc ;;
-    rs) echo --filter box ;;
-    df) echo --filter epipolar ;;
-    opw) echo --filter hmc --no-soft-weights ;;
+    hmc | robust) echo --filter "$1" ;;
+    rs | df | opw) echo --filter hmc --ablation "$1" ;;
     none | two_threshold | chi2 | depth_ransac) echo --filter "$1" ;;
     *) return 1 ;;
   esac
@@ -81,7 +79,7 @@ run_one() {
   if ((status != 0)) || ! is_finished "$folder"; then
     verdict="FAILED, exit code $status, see $folder/log.txt"
     # A run that tracked nothing has a result, too: that it tracked nothing.
-    is_finished "$folder" && verdict="nothing tracked, see $folder/log.txt"
+    is_finished "$folder" && verdict="few or no frames tracked, see $folder/log.txt"
   fi
   echo "${sequence##*/} $variant $seed" >>"$progress" # short lines are appended whole
   local ended left
@@ -106,7 +104,7 @@ datasets=
 rendered=false
 sequences=
 scenes=walking_xyz,walking_halfsphere,walking_static,walking_rpy,sitting_halfsphere,sitting_static,crowd,crowd2,crowd3,synchronous2
-variants=hmc,rs,df,opw,none,two_threshold,chi2,depth_ransac
+variants=hmc,robust,rs,df,opw,none,two_threshold,chi2,depth_ransac
 runs=5
 jobs=$(nproc)
 hosts=

@@ -45,16 +45,12 @@ done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 results=$PWD/build/$preset/test_results.xml
+cases=$PWD/build/$preset/test_results
 
 finish() {
   printf 'hmcdyn tests (preset %s%s, %d min %d s): %s\n' "$preset" "${label:+, label $label}" \
     $((SECONDS / 60)) $((SECONDS % 60)) "$2"
   exit "$1"
-}
-
-# An attribute of the results' first element, <testsuite tests="..." failures="..." ...>.
-result() {
-  grep -m 1 -oE "\b$1=\"[0-9]+\"" "$results" | grep -oE '[0-9]+'
 }
 
 if $install; then
@@ -71,11 +67,11 @@ if [[ -n $label ]]; then
 fi
 cmake --build "${build[@]}" || finish 1 "building failed"
 
-rm -f "$results"
+rm -rf "$results" "$cases"
 ctest "${run[@]}" --no-tests=error --output-junit "$results"
 status=$?
 [[ -f $results ]] || finish 1 "no test ran"
-total=$(result tests)
-failed=$(result failures)
-skipped=$(($(result skipped) + $(result disabled)))
-finish "$status" "$((total - failed - skipped)) passed, $failed failed, $skipped skipped"
+shopt -s nullglob
+read -r passed failed skipped < <(awk -f scripts/count_tests.awk results="$results" folder="$cases" \
+  "$cases"/*.xml "$results")
+finish "$status" "$passed passed, $failed failed, $skipped skipped"

@@ -5,13 +5,15 @@ set -uo pipefail
 
 usage() {
   cat <<USAGE
-Usage: ${0##*/} [--jobs N] [--since REVISION | --all | FILE...]
+Usage: ${0##*/} [--jobs N] [--together] [--since REVISION | --all | FILE...]
 
 Runs clang-tidy with the checks of .clang-tidy over the given files, or over all .cpp files of the
-library and the examples with the headers they include. A file that passed is not looked at again
-until it, a header it includes, its flags or the checks change.
+library, the examples and the Python module with the headers they include. A file that passed is not
+looked at again until it, a header it includes, its flags or the checks change.
 
   --since REVISION  only .cpp files and headers that changed since then (of git: HEAD~5, main, v0.1.0)
+  --together        sources that a unity build compiles as one are looked at as one, with those beside them:
+                    a fifth of the time; misc-unused-using-decls sees no source then
   --all             the tests, too (some 20 minutes more on 2 cores)
   --jobs N          files at a time (default: number of processors, $(nproc))
   --help            this text
@@ -26,7 +28,8 @@ usage_error() {
 
 jobs=$(nproc)
 since=
-left_out='^tests/'
+together=false
+left_out='^(python/)?tests/'
 files=()
 while (($# > 0)); do
   case "$1" in
@@ -36,9 +39,13 @@ while (($# > 0)); do
       shift
       ;;
     --all) left_out='^$' ;;
+    --together) together=true ;;
     --help | -h) usage && exit 0 ;;
     -*) usage_error "unknown argument $1" ;;
-    *) files+=("$(realpath -s "$1")") ;;
+    *)
+      [[ -f $1 ]] || usage_error "$1 is no file"
+      files+=("$(realpath -s "$1")")
+      ;;
   esac
   shift
 done
@@ -46,23 +53,30 @@ done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 export ROOT=$PWD BUILD=$PWD/build/tidy
-# Configured only: the compile commands are all that is asked of it.
-if ! configured=$(cmake --preset tidy 2>&1); then
-  echo "$configured"
-  exit 1
-fi
+# Configured only: the compile commands are all that is asked of it, and what the Python module includes.
+configure() {
+  local folder=$1 configured
+  shift
+  if ! configured=$(cmake --preset tidy -B "$folder" "$@" 2>&1 &&
+    { ! grep -q hmcdyn_python_comments "$folder/build.ninja" || cmake --build "$folder" --target hmcdyn_python_comments; } 2>&1); then
+    echo "$configured"
+    exit 1
+  fi
+}
+configure "$BUILD"
 if ((${#files[@]} == 0)); then
   if [[ -n $since ]]; then
     changed=$(git diff --name-only --diff-filter=d "$since" -- '*.cpp' '*.hpp') ||
       usage_error "--since is '$since', which git does not know"
-    mapfile -t sources < <(grep -E '^(src|examples)/.*\.cpp$' <<<"$changed")
+    mapfile -t sources < <(grep -E '^(src|examples|python/src)/.*\.cpp$' <<<"$changed")
     files=("${sources[@]/#/$ROOT/}")
     # A header by itself where none of these sources shows it.
     while read -r header; do
-      if ! grep -qsE "^#include [\"<]${header#*/}[\">]" "${sources[@]}" /dev/null; then
+      name=${header#python/}
+      if ! grep -qsE "^#include [\"<]${name#*/}[\">]" "${sources[@]}" /dev/null; then
         files+=("$ROOT/$header")
       fi
-    done < <(grep -E '^(src|examples|include)/.*\.hpp$' <<<"$changed")
+    done < <(grep -E '^(src|examples|include|python/src)/.*\.hpp$' <<<"$changed")
     if ((${#files[@]} == 0)); then
       echo "clang-tidy: no source of the library or the examples changed since $since"
       exit 0
@@ -70,8 +84,34 @@ if ((${#files[@]} == 0)); then
   else
     # Generated sources lie in the build folder and are not ours to tidy.
     mapfile -t files < <(sed -n "s|^ *\"file\": \"$ROOT/\(.*\)\",\{0,1\}$|\1|p" "$BUILD/compile_commands.json" |
-      grep -v '^build/' | grep -v "$left_out" | sort -u | sed "s|^|$ROOT/|")
+      grep -v '^build/' | grep -vE "$left_out" | sort -u | sed "s|^|$ROOT/|")
   fi
+fi
+
+# The unity sources in place of what they include. A header stays where none of their sources includes it.
+unite() {
+  local file name units chosen sources beside
+  mapfile -t units < <(find "$UNITED" -path '*/Unity/*.cxx' -not -path '*/tests/*' | sort)
+  mapfile -t chosen < <(for file in "${files[@]}"; do
+    [[ $file == *.hpp ]] || grep -lF "\"$file\"" "${units[@]}" /dev/null | head -n 1 | grep . || echo "$file"
+  done | sort -u)
+  mapfile -t sources < <(sed -n 's/^#include "\(\/.*\)"$/\1/p' "${chosen[@]}" /dev/null)
+  sources+=("${chosen[@]}")
+  printf '%s\n' "${chosen[@]}"
+  for file in "${files[@]}"; do
+    name=${file#"$ROOT"/}
+    name=${name#python/}
+    mapfile -t beside < <(printf '%s\n' "${sources[@]}" | grep -E "^${file%/*}/[^/]*$")
+    if [[ $file == *.hpp ]] && ! grep -qsE "^#include [\"<]${name#*/}[\">]" "${sources[@]}" /dev/null &&
+      ! grep -qsF "#include \"${file##*/}\"" "${beside[@]}" /dev/null; then
+      echo "$file"
+    fi
+  done
+}
+export UNITED=$ROOT/build/tidy-united
+if $together; then
+  configure "$UNITED" -DCMAKE_UNITY_BUILD=ON
+  mapfile -t files < <(unite)
 fi
 
 export CACHE=$BUILD/passed FAILED=$BUILD/failed
@@ -80,28 +120,43 @@ mkdir -p "$CACHE" "$FAILED"
 VERSION=$(clang-tidy --version) || exit 1
 export VERSION
 
+# The flags that a file is compiled with. A header has no command of its own: it gets that of a source next to it,
+# or of one in the nearest folder above (src/ for those of include/). clang-tidy by itself takes the source of the
+# most similar name, which may be one that sees neither Eigen nor OpenCV.
+flags() {
+  local folder line
+  folder=$(dirname "${1/#$ROOT\/include\/hmcdyn/$ROOT\/src}")
+  line=$(grep -h -m 1 -F -- " -c $1\"" "$BUILD/compile_commands.json" "$UNITED/compile_commands.json" 2>/dev/null)
+  while [[ -z $line && $folder == "$ROOT"/* ]]; do
+    line=$(grep -m 1 -F -- " -c $folder/" "$BUILD/compile_commands.json")
+    folder=$(dirname "$folder")
+  done
+  sed 's/^ *"command": "[^ ]* \(.*\) -o [^ ]* -c [^ ]*$/\1/; s/\\"/"/g; s/\\\\/\\/g' <<<"$line"
+}
+export -f flags
+
 # What the verdict on a file depends on: the tool, the checks, the flags, and all text it sees.
 fingerprint() {
-  local command
-  command=$(grep -F -- "-c $1\"" "$BUILD/compile_commands.json" | head -n 1 |
-    sed 's/^ *"command": "\(.*\)",$/\1/; s/\\"/"/g; s/\\\\/\\/g; s/ -o [^ ]* -c / -E -C /')
-  # A header has no command of its own; clang-tidy takes a neighbour's.
-  [[ -n $command ]] || return
   {
-    echo "$VERSION $command"
+    echo "$VERSION $2"
     cat "$ROOT/.clang-tidy"
-    (cd "$BUILD" && eval "$command")
+    # A header is no main file, says the compiler; what else it says, clang-tidy says again.
+    (cd "$BUILD" && eval "c++ $2 -E -C -x c++ $1" 2>/dev/null)
   } | sha256sum | cut -d' ' -f1
 }
 export -f fingerprint
 
 tidy_file() {
-  local name=${1#"$ROOT"/} print start=$SECONDS
-  print=$(fingerprint "$1")
-  [[ -n $print && -f $CACHE/$print ]] && return
-  if output=$(clang-tidy -p "$BUILD" --quiet "$1" 2>&1); then
+  local name=${1#"$ROOT"/} options=() flags print output start=$SECONDS
+  if [[ $1 == "$UNITED"/* ]]; then # sources that are included are no headers, but ours
+    options=(--checks=-bugprone-suspicious-include "--header-filter=$ROOT/(include|src|examples|bench|python/src)/")
+  fi
+  flags=$(flags "$1")
+  print=$(fingerprint "$1" "$flags")
+  [[ ! -f $CACHE/$print ]] || return 0
+  if output=$(cd "$BUILD" && eval "clang-tidy --quiet ${options[*]@Q} $1 -- $flags" 2>&1); then
     echo "$name: passed in $((SECONDS - start)) s"
-    [[ -z $print ]] || touch "$CACHE/$print"
+    touch "$CACHE/$print"
   else
     printf '%s: failed\n%s\n' "$name" "$output"
     touch "$FAILED/${name//\//_}"

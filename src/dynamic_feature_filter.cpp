@@ -12,6 +12,7 @@
 #include <hmcdyn/dynamic_feature_filter.hpp>
 
 #include "flow_selection.hpp"
+#include "frame_camera.hpp"
 #include "frame_regions.hpp"
 
 namespace hmcdyn {
@@ -49,6 +50,14 @@ void checkInput(const DynamicFeatureFilterInput& input,
         frame.pyramid->front().size() != input.pyramid->front().size()) {
       throw std::invalid_argument(
           "filterDynamicFeatures: expected pyramids of one image size, as buildFlowPyramid makes");
+    }
+    const std::size_t matched = frame.matched_u.size();
+    if (frame.matched_v.size() != matched || (matched != 0 && matched != input.points.size())) {
+      throw std::invalid_argument("filterDynamicFeatures: matched_u has " +
+                                  std::to_string(matched) + " elements, matched_v " +
+                                  std::to_string(frame.matched_v.size()) +
+                                  "; expected none, or one for each of the " +
+                                  std::to_string(input.points.size()) + " key points");
     }
     if (options.distance == DistanceKind::kTwoView) {
       continue;
@@ -135,15 +144,33 @@ FlowMatches prolonged(const internal::FlowSelection& selection, const EarlierFra
 FlowMatches flowOf(const internal::FlowSelection& selection, const EarlierFrame& frame,
                    const DynamicFeatureFilterInput& input, const OpticalFlowOptions& options,
                    const FlowMatches& guess) {
-  const FlowMatches found = trackIntoEarlierFrame(*input.pyramid, *frame.pyramid,
-                                                  selection.points.view(), options, guess);
+  internal::FlowSelection open;  // those that the caller has not matched
+  FlowMatches open_guess;
   FlowMatches all;
   all.u.assign(input.points.size(), kNaN);
   all.v.assign(input.points.size(), kNaN);
-  all.found = found.found;
   for (std::size_t k = 0; k < selection.source.size(); ++k) {
-    all.u[selection.source[k]] = found.u[k];
-    all.v[selection.source[k]] = found.v[k];
+    const std::size_t i = selection.source[k];
+    if (!frame.matched_u.empty() && std::isfinite(frame.matched_u[i]) &&
+        std::isfinite(frame.matched_v[i])) {
+      all.u[i] = frame.matched_u[i];
+      all.v[i] = frame.matched_v[i];
+      ++all.found;
+      continue;
+    }
+    open.source.push_back(i);
+    open.points.push_back(selection.points.u[k], selection.points.v[k], selection.points.depth[k]);
+    if (!guess.u.empty()) {
+      open_guess.u.push_back(guess.u[k]);
+      open_guess.v.push_back(guess.v[k]);
+    }
+  }
+  const FlowMatches found = trackIntoEarlierFrame(*input.pyramid, *frame.pyramid,
+                                                  open.points.view(), options, open_guess);
+  all.found += found.found;
+  for (std::size_t k = 0; k < open.source.size(); ++k) {
+    all.u[open.source[k]] = found.u[k];
+    all.v[open.source[k]] = found.v[k];
   }
   return all;
 }
@@ -158,7 +185,7 @@ std::vector<KnownMotion> knownMotionOf(const internal::FlowSelection& selection,
                                        DynamicFeatureFilterWorkspace& workspace) {
   const PointPairsView pairs{flow.u, flow.v, input.points.u, input.points.v};
   if (input.memory == nullptr || !formsBeliefs(input, options) ||
-      backgroundSuffices(pairs, input.boxes, options.motion)) {
+      backgroundSuffices(pairs, input.boxes, options.two_view)) {
     return {};
   }
   FlowMatches chosen;
@@ -190,17 +217,21 @@ EarlierFrameReport compareWith(const EarlierFrame& frame, FlowMatches flow,
   report.flow = std::move(flow);
   const PointPairsView pairs{report.flow.u, report.flow.v, input.points.u, input.points.v};
   if (options.distance != DistanceKind::kEgoMotion) {
-    report.motion = estimateMotionModel(pairs, input.boxes, known, options.motion);
+    internal::estimateCamera(frame, pairs, known, input, options, report);
     report.used = report.motion.model.kind != TwoViewModelKind::kNone &&
                   report.motion.median_distance <= options.max_median_distance;
     if (report.used) {
       workspace.distance =
           modelDistances(report.motion.model, pairs, std::move(workspace.distance));
+      if (!report.camera_known && options.require_known_camera) {
+        internal::forgetOutside(input, workspace.distance);
+      }
       keepLarger(workspace.distance, distance);
     }
   }
   if (options.distance != DistanceKind::kTwoView) {
     report.used = true;
+    report.camera_known = true;
     keepLarger(egoMotionDistancesTo(frame, pairs, input, options.ego_motion), distance);
   }
   return report;
@@ -253,6 +284,21 @@ FilterStageResult stageOfSelection(const internal::FlowSelection& selection,
   return all;
 }
 
+/// Where nobody knows what the camera did, no point outside all regions is believed to move, and
+/// nothing is certain enough to speak for the camera in the next frame.
+MotionBelief doubted(MotionBelief belief, Span<const std::uint8_t> in_region,
+                     const MotionBeliefOptions& options) {
+  const float uncertain = std::nextafter(options.certain_weight, 0.0f);
+  for (std::size_t i = 0; i < belief.size(); ++i) {
+    belief.weight[i] = std::min(belief.weight[i], uncertain);
+    if (in_region[i] == 0 && belief.belief[i] > options.dynamic_belief) {
+      belief.belief[i] = kNaN;
+      belief.weight[i] = 0.0f;
+    }
+  }
+  return belief;
+}
+
 }  // namespace
 
 DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput& input,
@@ -285,6 +331,10 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
           compareWith(frame, std::move(flow), known, bounded, options, workspace, result.distance));
     }
   }
+  result.camera_unknown =
+      options.require_known_camera && !result.earlier.empty() &&
+      std::none_of(result.earlier.begin(), result.earlier.end(),
+                   [](const EarlierFrameReport& report) { return report.camera_known; });
   if (!forms_beliefs) {
     result.stage = filterKeyPoints(bounded.points, result.distance, regions.boxes,
                                    regions.membership, options.stage, workspace.stage);
@@ -316,6 +366,9 @@ DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,
   const MotionBelief nothing;
   result.belief = updateMotionBelief(votes, input.memory != nullptr ? *input.memory : nothing,
                                      options.belief, workspace.belief);
+  if (result.camera_unknown) {
+    result.belief = doubted(std::move(result.belief), in_region, options.belief);
+  }
   result.stage = applyMotionBelief(result.belief, workspace.belief.surface.is_dragged,
                                    std::move(result.stage), options.belief, options.belief_verdict);
   return result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame_regions.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -66,6 +67,27 @@ std::vector<std::uint8_t> inRegion(const FrameRegions& regions, std::size_t poin
     flags[i] = 1;
   }
   return flags;
+}
+
+double shareCovered(Span<const DetectionBox> boxes, const cv::Size& image) {
+  // On a raster of 8 px: exact enough, and boxes may overlap in any way.
+  constexpr int kRaster = 8;
+  constexpr int kMiddle = kRaster / 2;
+  const int columns = (image.width + kRaster - 1) / kRaster;
+  const int rows = (image.height + kRaster - 1) / kRaster;
+  int covered = 0;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto u = static_cast<float>(column * kRaster + kMiddle);
+      const auto v = static_cast<float>(row * kRaster + kMiddle);
+      covered += std::any_of(boxes.begin(), boxes.end(),
+                             [&](const DetectionBox& box) { return box.contains(u, v); })
+                     ? 1
+                     : 0;
+    }
+  }
+  return columns * rows == 0 ? 0.0
+                             : static_cast<double>(covered) / static_cast<double>(columns * rows);
 }
 
 }  // namespace hmcdyn::internal

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <opencv2/core/types.hpp>
+
 #include <hmcdyn/box_dynamism.hpp>
 #include <hmcdyn/dynamic_feature_filter.hpp>
 #include <hmcdyn/regions.hpp>
@@ -30,5 +32,8 @@ BoxMembership membershipOf(const FrameRegions& regions, const std::vector<std::s
 
 /// N flags: the point belongs to a region.
 std::vector<std::uint8_t> inRegion(const FrameRegions& regions, std::size_t points);
+
+/// Part of the image that boxes cover, 0..1; what several cover counts once.
+double shareCovered(Span<const DetectionBox> boxes, const cv::Size& image);
 
 }  // namespace hmcdyn::internal

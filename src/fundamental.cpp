@@ -21,10 +21,10 @@ namespace {
 
 using internal::Match;
 
-void checkOptions(const MotionModelOptions& options) {
+void checkOptions(const TwoViewOptions& options) {
   const auto require = [](bool good, const char* name, double value, const char* expected) {
     if (!good) {
-      throw std::invalid_argument(std::string("MotionModelOptions::") + name + " is " +
+      throw std::invalid_argument(std::string("TwoViewOptions::") + name + " is " +
                                   std::to_string(value) + "; expected " + expected);
     }
   };
@@ -63,7 +63,7 @@ int occupiedCells(const std::vector<Match>& some, const std::vector<Match>& all)
 
 /// Whether `some` may speak for the camera in place of `all`.
 bool suffice(const std::vector<Match>& some, const std::vector<Match>& all,
-             const MotionModelOptions& options) {
+             const TwoViewOptions& options) {
   const int least = std::max(options.min_background_matches, options.min_matches);
   return some.size() >= static_cast<std::size_t>(least) &&
          occupiedCells(some, all) >= options.min_background_cells;
@@ -76,7 +76,7 @@ struct SortedMatches {
   std::vector<Match> at_rest;
   std::vector<Match> not_moving;  ///< Those at rest and the unknown.
 
-  MatchSource choose(const MotionModelOptions& options) const {
+  MatchSource choose(const TwoViewOptions& options) const {
     for (const MatchSource source :
          {MatchSource::kBackground, MatchSource::kAtRest, MatchSource::kNotMoving}) {
       if (suffice(of(source), all, options)) {
@@ -95,6 +95,7 @@ struct SortedMatches {
       case MatchSource::kNotMoving:
         return not_moving;
       case MatchSource::kAll:
+      case MatchSource::kPrediction:
         break;
     }
     return all;
@@ -131,7 +132,7 @@ enum class Estimator { kFundamental, kHomography };
 
 /// Robust estimate by OpenCV; the zero matrix where it finds none. Seeded, so that runs repeat.
 Eigen::Matrix3d estimateRobustly(const std::vector<Match>& matches, Estimator estimator,
-                                 const MotionModelOptions& options) {
+                                 const TwoViewOptions& options) {
   std::vector<cv::Point2f> earlier;
   std::vector<cv::Point2f> current;
   for (const Match& match : matches) {
@@ -176,19 +177,30 @@ Eigen::Matrix3d estimateRobustly(const std::vector<Match>& matches, Estimator es
   return matrix.allFinite() ? matrix : Eigen::Matrix3d::Zero();
 }
 
-double distanceUnder(const TwoViewModel& model, const Match& match) {
-  if (model.kind == TwoViewModelKind::kFundamental) {
-    return epipolarDistance(model.matrix, match.earlier, match.current);
+/// Distances (px) of matches under a model.
+class ModelDistance {
+ public:
+  explicit ModelDistance(const TwoViewModel& model) : kind_(model.kind), matrix_(model.matrix) {}
+
+  double operator()(const Match& match) const {
+    if (kind_ == TwoViewModelKind::kFundamental) {
+      return epipolarDistance(matrix_, match.earlier, match.current);
+    }
+    return ((matrix_ * match.earlier.homogeneous()).hnormalized() - match.current).norm();
   }
-  return ((model.matrix * match.earlier.homogeneous()).hnormalized() - match.current).norm();
-}
+
+ private:
+  TwoViewModelKind kind_;
+  Eigen::Matrix3d matrix_;
+};
 
 /// Fills in how well the model explains the matches.
-void assess(const std::vector<Match>& matches, const MotionModelOptions& options,
-            MotionModelEstimate& estimate) {
+void assess(const std::vector<Match>& matches, const TwoViewOptions& options,
+            TwoViewEstimate& estimate) {
   std::vector<double> distances;
+  const ModelDistance distance_of(estimate.model);
   for (const Match& match : matches) {
-    const double distance = distanceUnder(estimate.model, match);
+    const double distance = distance_of(match);
     if (std::isfinite(distance)) {
       distances.push_back(distance);
       estimate.inliers += distance <= options.inlier_threshold ? 1 : 0;
@@ -201,7 +213,7 @@ void assess(const std::vector<Match>& matches, const MotionModelOptions& options
   }
 }
 
-bool cameraStoodStill(const std::vector<Match>& matches, const MotionModelOptions& options) {
+bool cameraStoodStill(const std::vector<Match>& matches, const TwoViewOptions& options) {
   const auto still = std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
     return (match.current - match.earlier).norm() < options.still_displacement;
   });
@@ -210,8 +222,9 @@ bool cameraStoodStill(const std::vector<Match>& matches, const MotionModelOption
 }
 
 double inlierShare(const TwoViewModel& model, const std::vector<Match>& matches, double threshold) {
+  const ModelDistance distance_of(model);
   const auto inliers = std::count_if(matches.begin(), matches.end(), [&](const Match& match) {
-    return distanceUnder(model, match) <= threshold;
+    return distance_of(match) <= threshold;
   });
   return static_cast<double>(inliers) / static_cast<double>(matches.size());
 }
@@ -235,29 +248,28 @@ const char* toString(FundamentalVerdict verdict) noexcept {
 }
 
 bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                        const MotionModelOptions& options) {
+                        const TwoViewOptions& options) {
   checkOptions(options);
   checkPointPairs(pairs);
   const SortedMatches sorted = sortMatches(pairs, boxes, {});
   return suffice(sorted.background, sorted.all, options);
 }
 
-MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                                        const MotionModelOptions& options) {
-  return estimateMotionModel(pairs, boxes, {}, options);
+TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                     const TwoViewOptions& options) {
+  return estimateTwoViewModel(pairs, boxes, {}, options);
 }
 
-MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                                        Span<const KnownMotion> known,
-                                        const MotionModelOptions& options) {
+TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                     Span<const KnownMotion> known, const TwoViewOptions& options) {
   checkOptions(options);
   checkPointPairs(pairs);
   if (!known.empty() && known.size() != pairs.size()) {
-    throw std::invalid_argument("estimateMotionModel: known has " + std::to_string(known.size()) +
+    throw std::invalid_argument("estimateTwoViewModel: known has " + std::to_string(known.size()) +
                                 " elements; expected none, or one for each of the " +
                                 std::to_string(pairs.size()) + " pairs");
   }
-  MotionModelEstimate estimate;
+  TwoViewEstimate estimate;
   const SortedMatches sorted = sortMatches(pairs, boxes, known);
   estimate.source = sorted.choose(options);
   const std::vector<Match>& matches = sorted.of(estimate.source);
@@ -287,11 +299,11 @@ MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const 
     }
   }
   if (estimate.verdict != FundamentalVerdict::kDefined) {
-    const TwoViewModel homography{TwoViewModelKind::kHomography,
-                                  estimateRobustly(matches, Estimator::kHomography, options)};
-    const bool explains = !homography.matrix.isZero() &&
-                          inlierShare(homography, matches, 2.0 * options.inlier_threshold) >=
-                              static_cast<double>(options.min_homography_share);
+    const Eigen::Matrix3d found = estimateRobustly(matches, Estimator::kHomography, options);
+    const TwoViewModel homography{TwoViewModelKind::kHomography, found};
+    const bool explains =
+        !found.isZero() && inlierShare(homography, matches, 2.0 * options.inlier_threshold) >=
+                               static_cast<double>(options.min_homography_share);
     if (explains) {
       estimate.model = homography;
     }

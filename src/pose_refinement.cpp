@@ -76,8 +76,7 @@ std::string messageOf(Termination why, std::string_view account) {
   return message.append(toString(why)).append(": ").append(account);
 }
 
-PoseRefinementResult unrefined(const PoseObservations& observations,
-                               const Eigen::Isometry3d& initial) {
+PoseRefinementResult unrefined(const PoseObservations& observations, const Pose& initial) {
   PoseRefinementResult result;
   result.camera_from_world = initial;
   result.inlier.assign(observations.size(), 0);
@@ -87,8 +86,7 @@ PoseRefinementResult unrefined(const PoseObservations& observations,
 }
 
 PoseRefinementResult runRounds(detail::PoseProblem& problem, const PoseObservations& observations,
-                               const Eigen::Isometry3d& initial,
-                               const PoseRefinementOptions& options) {
+                               const Pose& initial, const PoseRefinementOptions& options) {
   PoseRefinementResult result = unrefined(observations, initial);
   const auto stop = [&result](Termination why, std::string_view account) {
     result.termination = why;
@@ -163,8 +161,7 @@ PoseRefinementWorkspace& PoseRefinementWorkspace::operator=(PoseRefinementWorksp
     default;
 
 PoseRefinementResult refinePose(const PoseObservations& observations, const PinholeCamera& camera,
-                                const Eigen::Isometry3d& initial,
-                                const PoseRefinementOptions& options,
+                                const Pose& initial, const PoseRefinementOptions& options,
                                 PoseRefinementWorkspace& workspace) {
   detail::checkInput(observations, camera, initial, options);
   if (options.solver == PoseSolver::kCeresProblem) {
@@ -179,8 +176,7 @@ PoseRefinementResult refinePose(const PoseObservations& observations, const Pinh
 }
 
 PoseRefinementResult refinePose(const PoseObservations& observations, const PinholeCamera& camera,
-                                const Eigen::Isometry3d& initial,
-                                const PoseRefinementOptions& options) {
+                                const Pose& initial, const PoseRefinementOptions& options) {
   PoseRefinementWorkspace workspace;
   return refinePose(observations, camera, initial, options, workspace);
 }

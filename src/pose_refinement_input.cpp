@@ -69,6 +69,7 @@ void checkSizes(const PoseObservations& observations, DepthRow depth_row) {
   check("sigma", observations.sigma, true);
   check("depth", observations.depth, depth_row == DepthRow::kNone);
   check("weight", observations.weight, true);
+  check("depth_sigma", observations.depth_sigma, true);
 }
 
 void checkCamera(const PinholeCamera& camera) {
@@ -96,10 +97,7 @@ void checkPose(const Eigen::Isometry3d& pose) {
 
 void checkOptions(const PoseRefinementOptions& options) {
   if (options.depth_row == DepthRow::kDepth) {
-    checkNotNegative("options.depth_noise_floor", options.depth_noise_floor);
-    checkNotNegative("options.depth_noise_quadratic", options.depth_noise_quadratic);
-    checkPositive("options.depth_noise_floor + options.depth_noise_quadratic",
-                  options.depth_noise_floor + options.depth_noise_quadratic);
+    checkModel(options.depth_error);
   }
   if (options.depth_row == DepthRow::kDisparity) {
     checkPositive("options.baseline_fx", options.baseline_fx);
@@ -139,6 +137,9 @@ void checkInput(const PoseObservations& observations, const PinholeCamera& camer
       "sigma", observations.sigma, [](float sigma) { return sigma > 0.0f && sigma <= kLargest; },
       "finite and > 0");
   checkElements(
+      "depth_sigma", observations.depth_sigma,
+      [](float sigma) { return sigma > 0.0f && sigma <= kLargest; }, "finite and > 0");
+  checkElements(
       "weight", observations.weight,
       [](float weight) { return weight >= 0.0f && weight <= kLargest; }, "finite and >= 0");
 }
@@ -172,7 +173,8 @@ PointMeasurement measurementOf(const PoseObservations& observations, std::size_t
   if (options.depth_row == DepthRow::kDepth) {
     point.observed.z() = depth;
     point.inverse_sigma.z() =
-        1.0 / (options.depth_noise_floor + options.depth_noise_quadratic * depth * depth);
+        1.0 / (observations.depth_sigma.empty() ? depthError(depth, options.depth_error)
+                                                : observations.depth_sigma[i]);
   } else {
     point.observed.z() = point.observed.x() - options.baseline_fx / depth;
     point.inverse_sigma.z() = 1.0 / sigma;

@@ -268,6 +268,25 @@ TEST(ClusterFilter, UnequalSizesAreRefused) {
   EXPECT_NE(test::invalidArgumentOf([&] { box.filter(0.0f, paperRules()); }), "nothing thrown");
 }
 
+TEST(ClusterFilter, ALabelBeyondTheClustersIsRefused) {
+  Box box;
+  box.cluster(2.0f, 2.1f, {2.0f, 2.0f, 2.0f});  // labels 0, of one cluster
+  const Box good = box;
+  box.clustering.label[1] = 7;
+  EXPECT_EQ(test::invalidArgumentOf([&] { box.filter(0.0f, paperRules()); }),
+            "filterClusters: cluster labels reach from 0 to 7 in a clustering of 1 clusters; "
+            "expected -1 (noise), or a number below that of the clusters");
+  box = good;
+  box.clustering.label[1] = -2;
+  EXPECT_NE(test::invalidArgumentOf([&] { box.filter(0.0f, paperRules()); }), "nothing thrown");
+  box = good;
+  box.clustering.clusters = 0;
+  EXPECT_NE(test::invalidArgumentOf([&] { box.filter(0.0f, paperRules()); }), "nothing thrown");
+  box = good;
+  box.clustering.clusters = -1;
+  EXPECT_NE(test::invalidArgumentOf([&] { box.filter(0.0f, paperRules()); }), "nothing thrown");
+}
+
 TEST(ClusterFilter, OptionsOutOfRangeAreNamed) {
   const auto message = [](auto change) {
     ClusterFilterOptions options = paperRules();

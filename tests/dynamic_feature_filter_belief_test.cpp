@@ -29,8 +29,8 @@ DynamicFeatureFilterOptions beliefOptions() {
   options.flow_margin = 20.0f;
   options.flow_in_boxes = 100;
   options.flow_background = 120;
-  options.motion.min_background_matches = 60;
-  options.motion.min_background_cells = 5;
+  options.two_view.min_background_matches = 60;
+  options.two_view.min_background_cells = 5;
   options.use_belief = true;
   options.stage = test::fixedStageOptions(FilterRule::kHmc);
   options.max_median_distance = 0.5f;
@@ -57,7 +57,9 @@ struct BelievedClip {
   DynamicFeatureFilterResult run(const MotionBelief* memory = nullptr) const {
     std::vector<EarlierFrame> earlier;
     for (std::size_t k = 0; k < pyramids.size(); ++k) {
-      earlier.push_back({&pyramids[k], {}, {}, ages[k]});
+      earlier.emplace_back();
+      earlier.back().pyramid = &pyramids[k];
+      earlier.back().age = ages[k];
     }
     DynamicFeatureFilterInput input;
     input.pyramid = &current;
@@ -139,7 +141,7 @@ TEST(DynamicFeatureFilterBelief, ACrowdThatFillsTheImageIsNotTakenForTheWorld) {
   // Given more points on the thing than on the walls, and a belief of a frame that shows both
   BelievedClip clip({1});
   clip.options.flow_in_boxes = 0;
-  clip.options.motion.min_homography_share = 0.4f;
+  clip.options.two_view.min_homography_share = 0.4f;
   const MotionBelief memory = clip.run().belief;
   KeyPoints few;
   std::size_t on_thing = 0;

@@ -33,8 +33,8 @@ DynamicFeatureFilterOptions maskOptions(bool use_belief) {
   options.flow_margin = 20.0f;
   options.flow_in_boxes = 100;
   options.flow_background = 120;
-  options.motion.min_background_matches = 60;
-  options.motion.min_background_cells = 5;
+  options.two_view.min_background_matches = 60;
+  options.two_view.min_background_cells = 5;
   options.use_belief = use_belief;
   options.stage = test::fixedStageOptions(FilterRule::kHmc);
   options.max_median_distance = 0.5f;
@@ -55,7 +55,9 @@ struct MaskedClip {
   explicit MaskedClip(bool use_belief) : options(maskOptions(use_belief)) {
     current = buildFlowPyramid(scene.grayOf(0), options.flow);
     before = buildFlowPyramid(scene.grayOf(1), options.flow);
-    earlier.push_back({&before, {}, {}, 1.0 / 30.0});
+    earlier.emplace_back();
+    earlier.back().pyramid = &before;
+    earlier.back().age = 1.0 / 30.0;
     input.pyramid = &current;
     input.points = points.view();
     input.earlier = earlier;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <hmcdyn/epipolar.hpp>
@@ -324,6 +325,54 @@ TEST(ModelDistances, KindsHaveNames) {
   EXPECT_STREQ(toString(TwoViewModelKind::kFundamental), "fundamental");
   EXPECT_STREQ(toString(TwoViewModelKind::kHomography), "homography");
   EXPECT_STREQ(toString(TwoViewModelKind::kIdentity), "identity");
+}
+
+// K = diag(f, f, 1), t = (1, 0, 0): K^-T [t]x K^-1 has -1/f at (1, 2) and 1/f at (2, 1), and
+// nothing else. Lines are rows of the image.
+TEST(FundamentalOfMotion, OfASidewaysMoveHasRowsAsEpipolarLines) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.translation().x() = 1.0;
+  const Eigen::Matrix3d f = fundamentalOfMotion({100.0, 100.0, 0.0, 0.0}, motion);
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  expected(1, 2) = -0.01;
+  expected(2, 1) = 0.01;
+  EXPECT_LT((f - expected).norm(), 1e-15);
+  EXPECT_NEAR(epipolarDistance(f, {7.0, 3.0}, {90.0, 5.5}), 2.5, 1e-12);
+}
+
+TEST(FundamentalOfMotion, PutsEveryPointAtRestOnItsLineAndAMovedOneOffIt) {
+  const PinholeCamera camera{535.4, 539.2, 320.1, 247.6};
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() =
+      Eigen::AngleAxisd(0.05, Eigen::Vector3d(0.3, -0.9, 0.2).normalized()).toRotationMatrix();
+  motion.translation() = Eigen::Vector3d(0.04, -0.02, 0.03);
+  const TwoViewModel model = modelOfMotion(camera, motion);
+  ASSERT_EQ(model.kind, TwoViewModelKind::kFundamental);
+  for (const double depth : {0.6, 1.5, 4.0}) {
+    for (const double u : {20.0, 300.0, 600.0}) {
+      const Eigen::Vector2d earlier(u, 400.0 - 0.5 * u);
+      const Eigen::Vector2d current =
+          camera.project(motion * camera.unproject(earlier.x(), earlier.y(), depth));
+      EXPECT_NEAR(epipolarDistance(model.matrix, earlier, current), 0.0, 1e-9);
+      const Eigen::Vector3d line = epipolarLine(model.matrix, earlier);
+      const Eigen::Vector2d across = line.head<2>().normalized();
+      EXPECT_NEAR(epipolarDistance(model.matrix, earlier, current + 3.0 * across), 3.0, 1e-9);
+    }
+  }
+}
+
+TEST(ModelOfMotion, OfATurnIsTheHomographyThatMovesPixelsByIt) {
+  const PinholeCamera camera{500.0, 500.0, 320.0, 240.0};
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  motion.translation().x() = 0.0001;  // 0.05 px at 1 m
+  const TwoViewModel model = modelOfMotion(camera, motion);
+  ASSERT_EQ(model.kind, TwoViewModelKind::kHomography);
+  // The centre's ray turns by 0.02 rad: f tan(0.02).
+  const Eigen::Vector2d moved =
+      (Eigen::Matrix3d(model.matrix) * Eigen::Vector3d(320.0, 240.0, 1.0)).hnormalized();
+  EXPECT_NEAR(moved.x(), 320.0 + 500.0 * std::tan(0.02), 1e-9);
+  EXPECT_NEAR(moved.y(), 240.0, 1e-9);
 }
 
 }  // namespace

@@ -262,6 +262,7 @@ TEST(FilterStage, RulesOfThePeersThroughTheSameCall) {
   const Set person{0, 1, 2, 3, 4, 5};
   EXPECT_EQ(dynamic(FilterRule::kNone), Set{});
   EXPECT_EQ(dynamic(FilterRule::kBox), (Set{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(dynamic(FilterRule::kDynamicBox), (Set{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
   EXPECT_EQ(dynamic(FilterRule::kEpipolar), person);
   EXPECT_EQ(dynamic(FilterRule::kTwoThreshold), (Set{0, 1, 2, 3, 4, 5, 13}));
   EXPECT_EQ(dynamic(FilterRule::kChiSquare), person);
@@ -269,8 +270,8 @@ TEST(FilterStage, RulesOfThePeersThroughTheSameCall) {
 }
 
 TEST(FilterStage, RulesHaveNames) {
-  const std::vector<std::string> names{"none", "box",          "epipolar", "two_threshold",
-                                       "chi2", "depth_ransac", "hmc"};
+  const std::vector<std::string> names{"none",          "box",  "dynamic_box",  "epipolar",
+                                       "two_threshold", "chi2", "depth_ransac", "hmc"};
   ASSERT_EQ(std::size(kFilterRules), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(toString(kFilterRules[i]), names[i]);

@@ -20,16 +20,16 @@
 namespace hmcdyn {
 namespace {
 
-using test::fixedMotionModelOptions;
+using test::fixedTwoViewOptions;
 using test::makeScene;
 using test::motionOf;
 using test::noisy;
 using test::SceneSettings;
 using test::TwoViewScene;
 
-MotionModelEstimate estimate(const TwoViewScene& scene, const std::vector<DetectionBox>& boxes = {},
-                             const MotionModelOptions& options = fixedMotionModelOptions()) {
-  return estimateMotionModel(scene.pairs(), boxes, options);
+TwoViewEstimate estimate(const TwoViewScene& scene, const std::vector<DetectionBox>& boxes = {},
+                         const TwoViewOptions& options = fixedTwoViewOptions()) {
+  return estimateTwoViewModel(scene.pairs(), boxes, options);
 }
 
 double quantile(std::vector<float> values, double share) {
@@ -50,13 +50,13 @@ class MotionModelSeeds : public ::testing::TestWithParam<std::uint32_t> {};
 TEST_P(MotionModelSeeds, TranslationDefinesF) {
   for (const Eigen::Isometry3d& motion : translations()) {
     // Given a scene with depth, seen with the noise of tracked points
-    const MotionModelEstimate found = estimate(makeScene(motion, noisy(GetParam())));
+    const TwoViewEstimate found = estimate(makeScene(motion, noisy(GetParam())));
 
     // Then
     ASSERT_EQ(found.verdict, FundamentalVerdict::kDefined) << motion.matrix();
     EXPECT_TRUE(found.fundamentalDefined());
     EXPECT_EQ(found.model.kind, TwoViewModelKind::kFundamental);
-    EXPECT_NEAR(found.model.matrix.determinant(), 0.0, 1e-12);
+    EXPECT_NEAR(found.model.matrix.map().determinant(), 0.0, 1e-12);
     EXPECT_EQ(found.matches, 300U);
     // Noise across the line has a deviation of test::kTrackedNoise * sqrt 2 (both frames), a median
     // of 0.143.
@@ -92,9 +92,9 @@ TEST_P(MotionModelSeeds, AStillCameraMeasuresDisplacement) {
       scene.moveCurrent(i, {3.0, -4.0});
     }
   }
-  MotionModelOptions options = fixedMotionModelOptions();
+  TwoViewOptions options = fixedTwoViewOptions();
   options.still_displacement = 1.0f;  // noise of both frames, 5 deviations
-  const MotionModelEstimate found = estimate(scene, {box}, options);
+  const TwoViewEstimate found = estimate(scene, {box}, options);
   EXPECT_EQ(found.verdict, FundamentalVerdict::kCameraStill);
   EXPECT_EQ(found.model.kind, TwoViewModelKind::kIdentity);
   EXPECT_FALSE(found.fundamentalDefined());
@@ -111,7 +111,7 @@ TEST_P(MotionModelSeeds, AStillCameraMeasuresDisplacement) {
 void expectHomography(const TwoViewScene& scene, TwoViewScene exact) {
   // Given a box, whose third of the points is left out
   const DetectionBox box{0.0f, 0.0f, 220.0f, 480.0f, kPersonClassId, 1.0f};
-  const MotionModelEstimate found = estimate(scene, {box});
+  const TwoViewEstimate found = estimate(scene, {box});
   ASSERT_EQ(found.verdict, FundamentalVerdict::kIllConditioned)
       << "conditioning " << found.conditioning;
   ASSERT_EQ(found.model.kind, TwoViewModelKind::kHomography);
@@ -167,7 +167,7 @@ TEST_P(MotionModelSeeds, MoversInBoxesAreLeftOut) {
   ASSERT_GT(movers, 120U);
 
   // When
-  const MotionModelEstimate found = estimate(scene, {box});
+  const TwoViewEstimate found = estimate(scene, {box});
 
   // Then
   ASSERT_EQ(found.verdict, FundamentalVerdict::kDefined);
@@ -189,7 +189,7 @@ TEST_P(MotionModelSeeds, OutliersWithoutBoxesAreVotedDown) {
   for (std::size_t i = 0; i < scene.size(); i += 4) {
     scene.moveCurrent(i, {random.uniform(-30.0, 30.0), random.uniform(-30.0, 30.0)});
   }
-  const MotionModelEstimate found = estimate(scene);
+  const TwoViewEstimate found = estimate(scene);
   ASSERT_EQ(found.verdict, FundamentalVerdict::kDefined);
   SceneSettings exact = noisy(GetParam() + 1000);
   exact.noise = 0.0;
@@ -215,11 +215,11 @@ INSTANTIATE_TEST_SUITE_P(Seeds, MotionModelSeeds, ::testing::Range(1U, 9U));
 
 TEST(MotionModel, TooFewMatchesGiveNone) {
   const Eigen::Isometry3d motion = motionOf({0.0, 0.0, 0.0}, {0.1, 0.0, 0.0});
-  MotionModelOptions options = fixedMotionModelOptions();
+  TwoViewOptions options = fixedTwoViewOptions();
   options.min_matches = 8;
   for (const std::size_t n : {0U, 1U, 7U}) {
     const TwoViewScene scene = makeScene(motion, noisy(1, n));
-    const MotionModelEstimate found = estimate(scene, {}, options);
+    const TwoViewEstimate found = estimate(scene, {}, options);
     EXPECT_EQ(found.verdict, FundamentalVerdict::kTooFewMatches) << n;
     EXPECT_EQ(found.model.kind, TwoViewModelKind::kNone);
     EXPECT_EQ(found.matches, n);
@@ -237,12 +237,12 @@ TEST(MotionModel, UnmatchedPointsAreLeftOut) {
     scene.earlier_u[i] = scene.earlier_v[i] =
         i % 4 == 0 ? kNaN : std::numeric_limits<float>::infinity();
   }
-  const MotionModelEstimate found = estimate(scene);
+  const TwoViewEstimate found = estimate(scene);
   EXPECT_EQ(found.matches, 150U);
   EXPECT_EQ(found.verdict, FundamentalVerdict::kDefined);
 
   scene.earlier_u.assign(scene.size(), kNaN);
-  const MotionModelEstimate none = estimate(scene);
+  const TwoViewEstimate none = estimate(scene);
   EXPECT_EQ(none.verdict, FundamentalVerdict::kTooFewMatches);
   EXPECT_EQ(none.matches, 0U);
 }
@@ -268,7 +268,7 @@ TEST(MotionModel, DegenerateMatchesNeitherThrowNorDefineF) {
         constellation([](int i) {
           return Pixel(static_cast<float>(i % 10) * 60.0f, static_cast<float>(i / 10) * 60.0f);
         })}) {
-    const MotionModelEstimate found = estimate(scene);
+    const TwoViewEstimate found = estimate(scene);
     EXPECT_NE(found.verdict, FundamentalVerdict::kDefined) << "conditioning " << found.conditioning;
     for (const float distance : modelDistances(found.model, scene.pairs())) {
       EXPECT_TRUE(std::isnan(distance) || distance < 0.5f) << distance;
@@ -280,7 +280,7 @@ TEST(MotionModel, HugePixelsDoNoHarm) {
   TwoViewScene scene = makeScene(motionOf({0.0, 0.0, 0.0}, {0.1, 0.05, 0.0}), noisy(1));
   scene.current_u[0] = 3e38f;
   scene.earlier_v[1] = -3e38f;
-  const MotionModelEstimate found = estimate(scene);
+  const TwoViewEstimate found = estimate(scene);
   EXPECT_EQ(found.verdict, FundamentalVerdict::kDefined);
   EXPECT_NEAR(found.median_distance, 0.143, 0.04);
 }
@@ -293,11 +293,11 @@ TEST(MotionModel, RepeatsBitForBitForASeed) {
     for (std::size_t i = 0; i < scene.size(); i += 3) {
       scene.moveCurrent(i, {random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0)});
     }
-    const MotionModelEstimate first = estimate(scene);
+    const TwoViewEstimate first = estimate(scene);
     // Whatever ran before, and in whatever state OpenCV's own generator is.
     cv::theRNG().state = 12345;
     estimate(makeScene(motion, noisy(17)));
-    const MotionModelEstimate second = estimate(scene);
+    const TwoViewEstimate second = estimate(scene);
     EXPECT_EQ(first.verdict, second.verdict);
     EXPECT_EQ(first.model.kind, second.model.kind);
     EXPECT_EQ(first.model.matrix, second.model.matrix);
@@ -317,27 +317,27 @@ TEST(MotionModel, UnequalSizesAreRefused) {
 
 TEST(MotionModel, OptionsOutOfRangeAreNamed) {
   const auto message = [](auto change) {
-    MotionModelOptions options = fixedMotionModelOptions();
+    TwoViewOptions options = fixedTwoViewOptions();
     change(options);
-    return test::invalidArgumentOf([&] { estimateMotionModel({}, {}, options); });
+    return test::invalidArgumentOf([&] { estimateTwoViewModel({}, {}, options); });
   };
-  using Options = MotionModelOptions;
+  using Options = TwoViewOptions;
   EXPECT_EQ(message([](Options& o) { o.min_matches = 7; }),
-            "MotionModelOptions::min_matches is 7.000000; expected a count >= 8");
+            "TwoViewOptions::min_matches is 7.000000; expected a count >= 8");
   EXPECT_EQ(message([](Options& o) { o.inlier_threshold = 0.0f; }),
-            "MotionModelOptions::inlier_threshold is 0.000000; expected a value > 0 (px)");
+            "TwoViewOptions::inlier_threshold is 0.000000; expected a value > 0 (px)");
   EXPECT_EQ(message([](Options& o) { o.confidence = 1.0; }),
-            "MotionModelOptions::confidence is 1.000000; expected a probability in (0, 1)");
+            "TwoViewOptions::confidence is 1.000000; expected a probability in (0, 1)");
   EXPECT_EQ(message([](Options& o) { o.max_iterations = 0; }),
-            "MotionModelOptions::max_iterations is 0.000000; expected a count >= 1");
+            "TwoViewOptions::max_iterations is 0.000000; expected a count >= 1");
   EXPECT_EQ(message([](Options& o) { o.still_share = 0.0f; }),
-            "MotionModelOptions::still_share is 0.000000; expected a share in (0, 1]");
+            "TwoViewOptions::still_share is 0.000000; expected a share in (0, 1]");
   EXPECT_EQ(message([](Options& o) { o.still_displacement = kNaN; }),
-            "MotionModelOptions::still_displacement is nan; expected a value >= 0 (px)");
+            "TwoViewOptions::still_displacement is nan; expected a value >= 0 (px)");
   EXPECT_EQ(message([](Options& o) { o.min_conditioning = 0.5f; }),
-            "MotionModelOptions::min_conditioning is 0.500000; expected a ratio >= 1");
+            "TwoViewOptions::min_conditioning is 0.500000; expected a ratio >= 1");
   EXPECT_EQ(message([](Options& o) { o.min_homography_share = 1.5f; }),
-            "MotionModelOptions::min_homography_share is 1.500000; expected a share in [0, 1]");
+            "TwoViewOptions::min_homography_share is 1.500000; expected a share in [0, 1]");
   EXPECT_EQ(message([](Options&) {}), "nothing thrown");
 }
 

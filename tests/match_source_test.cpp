@@ -17,7 +17,7 @@
 namespace hmcdyn {
 namespace {
 
-using test::fixedMotionModelOptions;
+using test::fixedTwoViewOptions;
 using test::makeScene;
 using test::motionOf;
 using test::TwoViewScene;
@@ -57,10 +57,9 @@ struct Crowd {
     }
     return static_cast<double>(near) / static_cast<double>(all);
   }
-  MotionModelEstimate estimate(
-      const std::vector<KnownMotion>& knowing,
-      const MotionModelOptions& options = fixedMotionModelOptions()) const {
-    return estimateMotionModel(scene.pairs(), kWholeImage, knowing, options);
+  TwoViewEstimate estimate(const std::vector<KnownMotion>& knowing,
+                           const TwoViewOptions& options = fixedTwoViewOptions()) const {
+    return estimateTwoViewModel(scene.pairs(), kWholeImage, knowing, options);
   }
 };
 
@@ -74,31 +73,31 @@ TEST(MatchSource, ABackgroundThatIsTooSmallGivesAllPoints) {
   ASSERT_LT(outside, 60U);
 
   // Then it is too few points ...
-  MotionModelOptions options = fixedMotionModelOptions();
-  const MotionModelEstimate few = estimateMotionModel(scene.pairs(), box, options);
+  TwoViewOptions options = fixedTwoViewOptions();
+  const TwoViewEstimate few = estimateTwoViewModel(scene.pairs(), box, options);
   EXPECT_EQ(few.source, MatchSource::kAll);
   EXPECT_EQ(few.matches, 200U);
 
   // ... or enough ...
   options.min_background_matches = static_cast<int>(outside);
   options.min_background_cells = 3;
-  const MotionModelEstimate strip = estimateMotionModel(scene.pairs(), box, options);
+  const TwoViewEstimate strip = estimateTwoViewModel(scene.pairs(), box, options);
   EXPECT_EQ(strip.source, MatchSource::kBackground);
   EXPECT_EQ(strip.matches, outside);
   EXPECT_TRUE(backgroundSuffices(scene.pairs(), box, options));
 
   // ... in too few cells.
   options.min_background_cells = 5;
-  EXPECT_EQ(estimateMotionModel(scene.pairs(), box, options).source, MatchSource::kAll);
+  EXPECT_EQ(estimateTwoViewModel(scene.pairs(), box, options).source, MatchSource::kAll);
   EXPECT_FALSE(backgroundSuffices(scene.pairs(), box, options));
 }
 
 TEST(MatchSource, ABoxThatHoldsNothingLeavesAllOfTheBackground) {
   const TwoViewScene scene = sceneOf(200);
   const std::vector<DetectionBox> inverted{{600.0f, 400.0f, 10.0f, 10.0f, kPersonClassId, 1.0f}};
-  EXPECT_TRUE(backgroundSuffices(scene.pairs(), inverted, fixedMotionModelOptions()));
-  const MotionModelEstimate found =
-      estimateMotionModel(scene.pairs(), inverted, fixedMotionModelOptions());
+  EXPECT_TRUE(backgroundSuffices(scene.pairs(), inverted, fixedTwoViewOptions()));
+  const TwoViewEstimate found =
+      estimateTwoViewModel(scene.pairs(), inverted, fixedTwoViewOptions());
   EXPECT_EQ(found.source, MatchSource::kBackground);
   EXPECT_EQ(found.matches, 200U);
 }
@@ -107,13 +106,13 @@ TEST(MatchSource, ACrowdThatIsKnownToMoveIsNotTakenForTheWorld) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const Crowd crowd(seed);
     // Where nothing is known the many are the world ...
-    const MotionModelEstimate fooled = crowd.estimate({});
+    const TwoViewEstimate fooled = crowd.estimate({});
     EXPECT_EQ(fooled.source, MatchSource::kAll);
     EXPECT_EQ(fooled.matches, 300U);
     EXPECT_LT(crowd.shareOnLines(fooled.model, KnownMotion::kAtRest), 0.5) << "seed " << seed;
 
     // ... else they are not.
-    const MotionModelEstimate found = crowd.estimate(crowd.known);
+    const TwoViewEstimate found = crowd.estimate(crowd.known);
     EXPECT_EQ(found.source, MatchSource::kAtRest);
     EXPECT_EQ(found.matches, crowd.at_rest);
     EXPECT_EQ(found.verdict, FundamentalVerdict::kDefined);
@@ -135,15 +134,15 @@ TEST(MatchSource, WhatHasJustAppearedDoesNotSpeakWhileOthersDo) {
       }
     }
     ASSERT_EQ(unknown, 100U);
-    const MotionModelEstimate found = crowd.estimate(known);
+    const TwoViewEstimate found = crowd.estimate(known);
     EXPECT_EQ(found.source, MatchSource::kAtRest);
     EXPECT_EQ(found.matches, crowd.at_rest);
     EXPECT_LT(crowd.shareOnLines(found.model, KnownMotion::kMoving), 0.1) << "seed " << seed;
 
     // Where too little is known to be at rest, the unknown speak, too.
-    MotionModelOptions options = fixedMotionModelOptions();
+    TwoViewOptions options = fixedTwoViewOptions();
     options.min_background_matches = 101;
-    const MotionModelEstimate short_of = crowd.estimate(known, options);
+    const TwoViewEstimate short_of = crowd.estimate(known, options);
     EXPECT_EQ(short_of.source, MatchSource::kNotMoving);
     EXPECT_EQ(short_of.matches, crowd.at_rest + unknown);
   }
@@ -151,17 +150,17 @@ TEST(MatchSource, WhatHasJustAppearedDoesNotSpeakWhileOthersDo) {
 
 TEST(MatchSource, EnoughBackgroundNeedsNoMemory) {
   const Crowd crowd(1);
-  const MotionModelEstimate with =
-      estimateMotionModel(crowd.scene.pairs(), {}, crowd.known, fixedMotionModelOptions());
-  const MotionModelEstimate without =
-      estimateMotionModel(crowd.scene.pairs(), {}, fixedMotionModelOptions());
+  const TwoViewEstimate with =
+      estimateTwoViewModel(crowd.scene.pairs(), {}, crowd.known, fixedTwoViewOptions());
+  const TwoViewEstimate without =
+      estimateTwoViewModel(crowd.scene.pairs(), {}, fixedTwoViewOptions());
   EXPECT_EQ(with.source, MatchSource::kBackground);
   EXPECT_EQ(with.model.matrix, without.model.matrix);
 }
 
 TEST(MatchSource, TooLittleAtRestGivesAllPoints) {
   const Crowd crowd(1);
-  MotionModelOptions options = fixedMotionModelOptions();
+  TwoViewOptions options = fixedTwoViewOptions();
   // Too few: 100 of 300 are at rest.
   ASSERT_EQ(crowd.at_rest, 100U);
   options.min_background_matches = 101;
@@ -185,8 +184,8 @@ TEST(MatchSource, KnowledgeOfAnotherSizeIsRefused) {
   const TwoViewScene scene = sceneOf(20);
   const std::vector<KnownMotion> known(19, KnownMotion::kAtRest);
   EXPECT_EQ(test::invalidArgumentOf(
-                [&] { estimateMotionModel(scene.pairs(), {}, known, fixedMotionModelOptions()); }),
-            "estimateMotionModel: known has 19 elements; expected none, or one for each of the 20 "
+                [&] { estimateTwoViewModel(scene.pairs(), {}, known, fixedTwoViewOptions()); }),
+            "estimateTwoViewModel: known has 19 elements; expected none, or one for each of the 20 "
             "pairs");
 }
 

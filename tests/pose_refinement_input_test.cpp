@@ -129,14 +129,12 @@ TEST(PoseRefinementInput, OptionsOutOfRangeAreRefused) {
     options.depth_row = DepthRow::kDisparity;
     options.baseline_fx = 0.0;
   });
-  expectOption("depth_noise_floor is -1", [](Options& options) {
-    options.depth_row = DepthRow::kDepth;
-    options.depth_noise_floor = -1.0;
-  });
-  expectOption("depth_noise_floor + options.depth_noise_quadratic is 0", [](Options& options) {
-    options.depth_row = DepthRow::kDepth;
-    options.depth_noise_floor = 0.0;
-    options.depth_noise_quadratic = 0.0;
+}
+
+TEST(PoseRefinementInput, ADepthErrorOutOfRangeIsRefused) {
+  expectRefusal("DepthErrorModel: noise_floor is -1", [](Call& call) {
+    call.options.depth_row = DepthRow::kDepth;
+    call.options.depth_error.noise_floor = -1.0f;
   });
 }
 

@@ -153,7 +153,7 @@ TEST(JointMode, LeavesCertainWeightsAlone) {
   const auto fixed = refinePose(scene.view(), scene.camera, scene.camera_from_world, options);
   options.weight_mode = WeightMode::kJoint;
   const auto joint = refinePose(scene.view(), scene.camera, scene.camera_from_world, options);
-  EXPECT_EQ(joint.camera_from_world.matrix(), fixed.camera_from_world.matrix());
+  EXPECT_EQ(joint.camera_from_world, fixed.camera_from_world);
   EXPECT_EQ(joint.weight, scene.weight);
 }
 

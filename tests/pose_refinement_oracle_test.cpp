@@ -43,7 +43,10 @@ Eigen::Vector3d residualOf(const PoseScene& scene, const Eigen::Isometry3d& pose
   Eigen::Vector3d e((scene.u[i] - u) / scene.sigma[i], (scene.v[i] - v) / scene.sigma[i], 0.0);
   const double z = scene.depth[i];
   if (options.depth_row == DepthRow::kDepth) {
-    e.z() = (z - p.z()) / (options.depth_noise_floor + options.depth_noise_quadratic * z * z);
+    const DepthErrorModel& model = options.depth_error;
+    const double noise = model.noise_floor + model.noise_quadratic * z * z;
+    const double systematic = model.systematic_linear * z + model.systematic_quadratic * z * z;
+    e.z() = (z - p.z()) / std::sqrt(noise * noise + systematic * systematic);
   } else if (options.depth_row == DepthRow::kDisparity) {
     const double right = scene.u[i] - options.baseline_fx / z;
     e.z() = (right - (u - options.baseline_fx / p.z())) / scene.sigma[i];

@@ -36,9 +36,9 @@ void appendPoint(PoseScene& scene, const Eigen::Vector3d& world, float u, float 
 }
 
 bool isFinite(const PoseRefinementResult& result) {
-  return result.camera_from_world.matrix().allFinite() && std::isfinite(result.initial_cost) &&
+  return result.camera_from_world.matrix.map().allFinite() && std::isfinite(result.initial_cost) &&
          std::isfinite(result.final_cost) &&
-         (!result.covariance || result.covariance->allFinite()) &&
+         (!result.covariance || result.covariance->map().allFinite()) &&
          std::all_of(result.weight.begin(), result.weight.end(),
                      [](float weight) { return std::isfinite(weight); });
 }
@@ -47,7 +47,7 @@ void expectInitialPose(const PoseRefinementResult& result, const Eigen::Isometry
                        PoseRefinementTermination why) {
   EXPECT_EQ(result.termination, why) << result.message;
   EXPECT_FALSE(result.succeeded());
-  EXPECT_EQ(result.camera_from_world.matrix(), initial.matrix());
+  EXPECT_EQ(result.camera_from_world, Pose(initial));
   EXPECT_FALSE(result.covariance);
   EXPECT_EQ(result.inliers, 0U);
   EXPECT_EQ(std::count(result.inlier.begin(), result.inlier.end(), 1), 0);
@@ -81,7 +81,7 @@ TEST_P(ThirtyPercentOutliers, LeaveThePoseOfTheOthers) {
   // then the pose is that of the good points alone, to a fraction of its own uncertainty,
   ASSERT_TRUE(result.succeeded()) << result.message;
   const auto delta = motionBetween(result.camera_from_world, expected.camera_from_world);
-  EXPECT_LT(delta.dot(expected.covariance->ldlt().solve(delta)), 1.0);
+  EXPECT_LT(delta.dot(expected.covariance->map().ldlt().solve(delta)), 1.0);
   // and the outliers are known, but for those that fell near their place.
   for (std::size_t i = 0; i < 90; ++i) {
     if (wrong[i] > 10.0) {
@@ -161,7 +161,7 @@ TEST(PoseRefinementRobust, PointsBehindTheCameraStayOut) {
   const auto expected = refinePose(without.view(), scene.camera, disturbed(scene));
   EXPECT_EQ(result.usable_points, 60U);
   EXPECT_EQ(result.inlier.back(), 0);
-  EXPECT_EQ(result.camera_from_world.matrix(), expected.camera_from_world.matrix());
+  EXPECT_EQ(result.camera_from_world, expected.camera_from_world);
 }
 
 TEST(PoseRefinementRobust, NotFinitePointsAreSkippedAndCounted) {
@@ -178,7 +178,7 @@ TEST(PoseRefinementRobust, NotFinitePointsAreSkippedAndCounted) {
   EXPECT_EQ(result.skipped_points, 5U);
   EXPECT_EQ(result.usable_points, 60U);
   EXPECT_EQ(result.inlier.size(), 65U);
-  EXPECT_EQ(result.camera_from_world.matrix(), expected.camera_from_world.matrix());
+  EXPECT_EQ(result.camera_from_world, expected.camera_from_world);
 }
 
 TEST(PoseRefinementRobust, FewerThanThreeUsablePointsGiveTheInitialPose) {

@@ -39,7 +39,7 @@ TEST(PoseRefinementWorkspace, ChangesNoResult) {
             refinePose(scene.view(), scene.camera, disturbed(scene), options, workspace);
         const auto fresh = refinePose(scene.view(), scene.camera, disturbed(scene), options);
         // then nothing of what it held shows.
-        EXPECT_EQ(reused.camera_from_world.matrix(), fresh.camera_from_world.matrix());
+        EXPECT_EQ(reused.camera_from_world, fresh.camera_from_world);
         EXPECT_EQ(reused.inlier, fresh.inlier);
         EXPECT_EQ(reused.weight, fresh.weight);
         EXPECT_EQ(reused.final_cost, fresh.final_cost);
@@ -57,8 +57,8 @@ TEST(PoseRefinementWorkspace, MayBeMovedAndUsedOn) {
   const auto moved_to = refinePose(scene.view(), scene.camera, disturbed(scene), {}, second);
   const auto moved_from =  // NOLINTNEXTLINE(bugprone-use-after-move): documented to work
       refinePose(scene.view(), scene.camera, disturbed(scene), {}, first);
-  EXPECT_EQ(moved_to.camera_from_world.matrix(), before.camera_from_world.matrix());
-  EXPECT_EQ(moved_from.camera_from_world.matrix(), before.camera_from_world.matrix());
+  EXPECT_EQ(moved_to.camera_from_world, before.camera_from_world);
+  EXPECT_EQ(moved_from.camera_from_world, before.camera_from_world);
 }
 
 TEST(PoseRefinementWorkspace, LeavesOnlyTheResultToAllocate) {

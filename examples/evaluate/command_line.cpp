@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "support/command_line.hpp"
+#include "support/time_unit_option.hpp"
 
 namespace hmcdyn::evaluate {
 namespace {
@@ -51,6 +52,14 @@ void addCommonOptions(CLI::App& app, RawArguments& raw) {
   app.add_option("-g,--groundtruth", arguments.groundtruth, "Ground-truth trajectory")
       ->type_name("FILE")
       ->required();
+  static const std::map<std::string, TruthFrame> kFrames{
+      {"camera", TruthFrame::kCamera}, {"bonn-markers", TruthFrame::kBonnMarkers}};
+  app.add_option("--groundtruth-of", arguments.truth_frame,
+                 "Whose poses the ground truth has. Those of the BONN data set are of the markers\n"
+                 "on the camera, 2 cm beside it: bonn-markers takes that into account. Published\n"
+                 "results do not. Default: camera, the poses as they are")
+      ->type_name("FRAME")
+      ->transform(CLI::CheckedTransformer(kFrames).description("{camera,bonn-markers}"));
   app.add_option(
          "-e,--estimate", raw.estimates,
          "Estimated trajectories. Those without a name, or with the same, count as runs of\n"
@@ -65,10 +74,11 @@ void addCommonOptions(CLI::App& app, RawArguments& raw) {
                  "Largest time difference of a pose and its ground truth (s). Default: ATE 0.02;\n"
                  "RPE twice the median interval of the ground truth")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(support::aboveZero());
   app.add_option("--offset", arguments.offset, "Added to the estimate's time stamps (s)")
       ->type_name("S")
       ->capture_default_str();
+  support::addTimeUnit(app, arguments.time_unit, "Of the time stamps in all files");
   app.add_flag("--scale", arguments.scale,
                "Fit a scale, too (Sim(3) alignment), for systems that cannot know it");
   app.add_flag("--json", arguments.json, "Print JSON instead of a table");
@@ -84,7 +94,7 @@ void addDeltaOptions(CLI::App& app, Arguments& arguments) {
                                                        {"frames", DeltaUnit::kFrames}};
   app.add_option("--delta", arguments.delta, "RPE: distance between the two poses of a pair")
       ->type_name("D")
-      ->check(CLI::PositiveNumber)
+      ->check(support::aboveZero())
       ->capture_default_str();
   app.add_option("--delta-unit", arguments.delta_unit,
                  "RPE: unit of --delta along the estimate: s (time), m (path), rad or deg\n"
@@ -106,7 +116,7 @@ void addFrameOptions(CLI::App& app, Arguments& arguments) {
                      "Number of frames given to the system: prints the tracking rate, the share\n"
                      "of them that have a pose")
           ->type_name("N")
-          ->check(CLI::PositiveNumber);
+          ->check(support::aboveZero());
   app.add_option("--associations", arguments.associations,
                  "List of the frames given to the system (rgb.txt or associations.txt), instead\n"
                  "of --frames")

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "evaluate/relative_pose_error.hpp"
+#include "evaluate/truth_frame.hpp"
+#include "support/time_stamps.hpp"
 
 namespace hmcdyn::evaluate {
 
@@ -24,12 +26,14 @@ struct SystemFile {
 struct Arguments {
   Command command = Command::kSummary;
   std::filesystem::path groundtruth;
+  TruthFrame truth_frame = TruthFrame::kCamera;  ///< What its poses are of.
   std::vector<SystemFile> estimates;
-  std::vector<SystemFile> baselines;  ///< Runs of one system.
-  std::optional<double> tolerance;    ///< Association (s); not set: each metric's default.
-  double offset = 0.0;                ///< Added to the estimate's time stamps (s).
-  bool scale = false;                 ///< Fit a scale, too.
-  double delta = 1.0;                 ///< RPE: distance of the poses of a pair.
+  std::vector<SystemFile> baselines;           ///< Runs of one system.
+  std::optional<double> tolerance;             ///< Association (s); not set: each metric's default.
+  double offset = 0.0;                         ///< Added to the estimate's time stamps (s).
+  std::optional<support::TimeUnit> time_unit;  ///< Of all files; none = found out.
+  bool scale = false;                          ///< Fit a scale, too.
+  double delta = 1.0;                          ///< RPE: distance of the poses of a pair.
   DeltaUnit delta_unit = DeltaUnit::kSeconds;
   std::optional<std::size_t> frames;   ///< Frames given to the system.
   std::filesystem::path associations;  ///< List of the frames given to the system.

@@ -2,16 +2,17 @@
 #include "evaluate/label_score.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+
+#include "support/text_table.hpp"
 
 namespace hmcdyn::evaluate {
 namespace {
@@ -31,48 +32,42 @@ double ratio(std::size_t part, std::size_t whole) {
 }
 
 double parseNumber(const std::string& text, const std::filesystem::path& file, std::size_t line) {
-  std::size_t used = 0;
   double value = 0.0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used != text.size() || text.empty() || !std::isfinite(value)) {
-    fail(file, line, "expected a finite number, found '" + text + "'");
+  if (!support::parseNumber(text, value) || !std::isfinite(value)) {
+    fail(file, line, "expected a finite number, found '" + support::printable(text) + "'");
   }
   return value;
 }
 
-std::ifstream open(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) {
+/// The lines of a text file without blanks at their ends.
+std::vector<std::string> readLines(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) {
     throw std::runtime_error(file.string() + ": cannot be read");
   }
-  return stream;
+  std::istringstream text(support::toText(support::readBytes(file), file.string()));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) {
+    line.erase(line.find_last_not_of(" \t\r") + 1);
+    lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
 using BoxesByTime = std::map<std::string, std::vector<ScoreBox>>;
 
 BoxesByTime readBoxes(const std::filesystem::path& file) {
-  std::ifstream stream = open(file);
   BoxesByTime boxes;
-  std::string text;
-  for (std::size_t line = 1; std::getline(stream, text); ++line) {
-    if (text.empty() || text.front() == '#') {
-      continue;
+  constexpr std::size_t kFields = 6;  // and a score, which plays no part
+  const support::TextTable table =
+      support::readTable(file, [](std::size_t fields) { return fields >= kFields; });
+  for (const support::TextRow& row : table.rows) {
+    const std::vector<std::string>& fields = row.fields;
+    if (fields.size() < kFields) {
+      fail(file, row.line, "expected 'timestamp class x_min y_min x_max y_max score'");
     }
-    std::istringstream fields(text);
-    std::string timestamp;
-    std::string object_class;
-    std::array<std::string, 4> corner;
-    if (!(fields >> timestamp >> object_class >> corner[0] >> corner[1] >> corner[2] >>
-          corner[3])) {
-      fail(file, line, "expected 'timestamp class x_min y_min x_max y_max score'");
-    }
-    boxes[timestamp].push_back(
-        {parseNumber(corner[0], file, line), parseNumber(corner[1], file, line),
-         parseNumber(corner[2], file, line), parseNumber(corner[3], file, line)});
+    boxes[fields[0]].push_back(
+        {parseNumber(fields[2], file, row.line), parseNumber(fields[3], file, row.line),
+         parseNumber(fields[4], file, row.line), parseNumber(fields[5], file, row.line)});
   }
   return boxes;
 }
@@ -124,18 +119,20 @@ double LabelScore::f1() const {
 double LabelScore::keptShare() const { return ratio(kept_in_boxes, static_in_boxes); }
 
 std::vector<LabelledPoint> readLabelledPoints(const std::filesystem::path& file) {
-  std::ifstream stream = open(file);
+  const std::vector<std::string> lines = readLines(file);
   const std::string kHeader = "timestamp,u,v,depth,distance,cluster,label,weight";
   const std::string kHeaderWithSize = kHeader + ",size";
-  std::string text;
-  if (!std::getline(stream, text) || (text != kHeader && text != kHeaderWithSize)) {
+  if (lines.empty() || (lines.front() != kHeader && lines.front() != kHeaderWithSize)) {
     fail(file, 1, "expected the header '" + kHeaderWithSize + "'");
   }
-  const std::size_t columns = text == kHeader ? 8 : 9;
+  const std::size_t columns = lines.front() == kHeader ? 8 : 9;
   std::vector<LabelledPoint> points;
-  for (std::size_t line = 2; std::getline(stream, text); ++line) {
+  for (std::size_t line = 2; line <= lines.size(); ++line) {
+    if (lines[line - 1].empty()) {
+      continue;
+    }
     std::vector<std::string> fields;
-    std::istringstream row(text);
+    std::istringstream row(lines[line - 1]);
     for (std::string field; std::getline(row, field, ',');) {
       fields.push_back(field);
     }

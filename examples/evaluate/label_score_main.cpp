@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
          "Points this near (px) to a border in the mask are not scored (default: \"detector "
          "ring\", 3 px at the pyramid level of the point, rounded up; without a column "
          "'size' in the file 3 px)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(hmcdyn::support::zeroOrMore());
   app.add_option("--skip-frames", arguments.options.skip_frames,
                  "So many first frames are left out")
       ->capture_default_str();

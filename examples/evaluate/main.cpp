@@ -39,7 +39,9 @@ void writePicture(const std::filesystem::path& file, const cv::Mat& picture) {
 }
 
 void run(const Arguments& arguments) {
-  const Evaluation evaluation = evaluateRuns(arguments);
+  const Evaluation evaluation = evaluateRuns(arguments, [](const std::string& note) {
+    std::fprintf(stderr, "hmcdyn_evaluate: %s\n", note.c_str());
+  });
   const std::string report =
       arguments.json ? toJson(arguments, evaluation.runs) : toTable(arguments, evaluation.runs);
   if (arguments.output.empty()) {

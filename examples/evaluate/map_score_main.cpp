@@ -82,21 +82,21 @@ int main(int argc, char** argv) {
                  "The run's trajectory (TUM format), to align the map with the ground truth;\n"
                  "without it the map is in the ground truth's world already");
   app.add_option("--tolerance", options.tolerance_base, "Distance from a surface (m)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(hmcdyn::support::zeroOrMore())
       ->capture_default_str();
   app.add_option("--tolerance-slope", options.tolerance_slope,
                  "Added to it, times the square of the depth (1/m)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(hmcdyn::support::zeroOrMore())
       ->capture_default_str();
   app.add_option("--every", options.every, "Every so many frames count")
-      ->check(CLI::PositiveNumber)
+      ->check(hmcdyn::support::aboveZero())
       ->capture_default_str();
   app.add_option("--radius", options.coverage_radius,
                  "A surface is covered where a map point is so near (m)")
-      ->check(CLI::PositiveNumber)
+      ->check(hmcdyn::support::aboveZero())
       ->capture_default_str();
   app.add_option("--max-depth", options.max_depth, "Surfaces farther away need no points (m)")
-      ->check(CLI::PositiveNumber)
+      ->check(hmcdyn::support::aboveZero())
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON instead of two lines");
   if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {

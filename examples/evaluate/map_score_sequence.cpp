@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,6 +10,7 @@
 
 #include "evaluate/map_score.hpp"
 #include "evaluate/trajectory.hpp"
+#include "support/text_table.hpp"
 
 namespace hmcdyn::evaluate {
 namespace {
@@ -67,23 +66,19 @@ MapScore scoreMap(std::vector<Eigen::Vector3f> points, const std::filesystem::pa
   const auto poses = posesByTime(sequence / "groundtruth.txt");
   MapScorer scorer(std::move(points), calibration.camera, options);
   const std::filesystem::path list = sequence / "associations.txt";
-  std::ifstream stream(list);
   std::size_t frames = 0;
   std::size_t entry = 0;
-  std::string text;
-  for (std::size_t line = 1; std::getline(stream, text); ++line) {
-    if (text.empty() || text.front() == '#' || entry++ % options.every != 0) {
+  const support::TextTable table =
+      support::readTable(list, [](std::size_t fields) { return fields == 4; });
+  for (const support::TextRow& row : table.rows) {
+    if (entry++ % options.every != 0) {
       continue;
     }
-    std::istringstream fields(text);
-    double stamp = 0.0;
-    double depth_stamp = 0.0;
-    std::string colour;
-    std::string depth;
-    if (!(fields >> stamp >> colour >> depth_stamp >> depth)) {
-      throw std::runtime_error(list.string() + ":" + std::to_string(line) +
-                               ": expected 'time rgb_file time depth_file'");
+    if (row.fields.size() != 4) {
+      throw support::errorAt(list.string(), row.line, "expected 'time rgb_file time depth_file'");
     }
+    const double stamp = support::parseFinite(row.fields[0], "time stamp", list.string(), row.line);
+    const std::string& depth = row.fields[3];
     const auto pose = poses.find(std::llround(1e6 * stamp));
     if (pose == poses.end()) {
       continue;

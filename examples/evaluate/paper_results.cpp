@@ -5,13 +5,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "support/text_table.hpp"
 
 namespace hmcdyn::evaluate {
 namespace {
@@ -44,14 +45,15 @@ PaperValue parseRow(const std::string& text, const std::filesystem::path& file, 
 }  // namespace
 
 std::vector<PaperValue> readPaperResults(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) {
+  if (!std::filesystem::exists(file)) {
     throw std::runtime_error(file.string() + ": cannot be read");
   }
+  std::istringstream stream(support::toText(support::readBytes(file), file.string()));
   std::vector<PaperValue> values;
   bool has_header = false;
   std::string text;
   for (std::size_t line = 1; std::getline(stream, text); ++line) {
+    text.erase(text.find_last_not_of(" \t\r") + 1);
     if (text.empty() || text.front() == '#') {
       continue;
     }

@@ -127,7 +127,11 @@ ResultTable compare(const std::string& number, const std::vector<System>& system
 }
 
 std::vector<System> ablations() {
-  return {{"rs", "RS", "RS"}, {"df", "DF", "DF"}, {"opw", "OPW", "OPW"}, {"hmc", "hmc", "HMC"}};
+  return {{"rs", "RS", "RS"},
+          {"df", "DF", "DF"},
+          {"opw", "OPW", "OPW"},
+          {"hmc", "hmc", "HMC"},
+          {"robust", "robust", ""}};
 }
 
 std::vector<System> peers() {
@@ -135,7 +139,8 @@ std::vector<System> peers() {
           {"chi2", "chi2", "OVD-SLAM"},
           {"two_threshold", "two_threshold", "SG-SLAM"},
           {"depth_ransac", "depth_ransac", ""},
-          {"hmc", "hmc", "HMC"}};
+          {"hmc", "hmc", "HMC"},
+          {"robust", "robust", ""}};
 }
 
 /// Table VI: a row a system, over the means of the sequences.

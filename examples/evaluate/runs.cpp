@@ -2,8 +2,12 @@
 #include "evaluate/runs.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "evaluate/truth_frame.hpp"
+#include "support/time_stamps.hpp"
 
 namespace hmcdyn::evaluate {
 namespace {
@@ -28,10 +32,71 @@ RpeResult evaluateRpe(const Arguments& arguments, double scale, const Trajectory
   return relativePoseError(groundtruth, estimate, options);
 }
 
+using Note = std::function<void(const std::string&)>;
+
+/// The unit of a ground truth's stamps (s): the user's, or what is plausible.
+double unitOf(const Arguments& arguments, const Trajectory& groundtruth, const Note& note) {
+  if (arguments.time_unit) {
+    return support::secondsOf(*arguments.time_unit, 1.0);
+  }
+  const support::StampReview review = support::reviewStamps(timestampsOf(groundtruth));
+  if (!review.doubt.empty() || review.unit == support::TimeUnit::kSeconds) {
+    return 1.0;  // sparse poses are none of a camera's
+  }
+  note(fmt::format("{}: the time stamps are read as {} (--time-unit says otherwise)",
+                   arguments.groundtruth.string(), toString(review.unit)));
+  return support::secondsOf(review.unit, 1.0);
+}
+
+/// The factor that makes seconds of the stamps of a file that goes with a ground truth.
+double unitBeside(const Arguments& arguments, const std::vector<double>& stamps,
+                  const Trajectory& groundtruth, double own, const std::string& file,
+                  const Note& note) {
+  if (arguments.time_unit) {
+    return support::secondsOf(*arguments.time_unit, 1.0);
+  }
+  constexpr double kSlack = 1.0;  // s; systems begin before the truth and end after it
+  const double first = groundtruth.front().timestamp - arguments.offset;
+  const double last = groundtruth.back().timestamp - arguments.offset;
+  const double seconds = support::secondsByOverlap(stamps, first, last, own, kSlack).value_or(1.0);
+  if (seconds != own) {
+    note(
+        fmt::format("{}: a time stamp of 1 is read as {:g} s, since that fits the ground truth "
+                    "(--time-unit says otherwise)",
+                    file, seconds));
+  }
+  return seconds;
+}
+
+Trajectory readPoses(const std::filesystem::path& file, const Note& note) {
+  NotedTrajectory read = readNotedTrajectory(file);
+  for (const std::string& sentence : read.notes) {
+    note(sentence);
+  }
+  return std::move(read.poses);
+}
+
 /// Time stamps of the frames given to the system; none where only their number is known.
-std::vector<double> readFrames(const Arguments& arguments) {
-  return arguments.associations.empty() ? std::vector<double>()
-                                        : readTimestamps(arguments.associations);
+std::vector<double> readFrames(const Arguments& arguments, const Trajectory& groundtruth,
+                               double unit, const Note& note) {
+  if (arguments.associations.empty()) {
+    return {};
+  }
+  std::vector<double> frames = readTimestamps(arguments.associations);
+  const double seconds =
+      unitBeside(arguments, frames, groundtruth, unit, arguments.associations.string(), note);
+  for (double& frame : frames) {
+    frame *= seconds;
+  }
+  return frames;
+}
+
+/// An error over few of the poses says little of the others.
+void noteFewPairs(const Run& run, const Trajectory& estimate, const Note& note) {
+  if (run.ate && 2 * run.ate->error.count < estimate.size()) {
+    note(fmt::format("{}: {} of {} poses have a ground truth in time; the error is of those alone",
+                     run.source.file.string(), run.ate->error.count, estimate.size()));
+  }
 }
 
 std::optional<Tracking> countTracked(const Arguments& arguments, const std::vector<double>& frames,
@@ -54,13 +119,18 @@ std::optional<Tracking> countTracked(const Arguments& arguments, const std::vect
 
 }  // namespace
 
-Evaluation evaluateRuns(const Arguments& arguments) {
+Evaluation evaluateRuns(const Arguments& arguments, const Note& note) {
   Evaluation evaluation;
-  evaluation.groundtruth = readTrajectory(arguments.groundtruth);
-  const std::vector<double> frames = readFrames(arguments);
+  evaluation.groundtruth = ofCamera(readPoses(arguments.groundtruth, note), arguments.truth_frame);
+  const double unit = unitOf(arguments, evaluation.groundtruth, note);
+  evaluation.groundtruth = withStampsTimes(std::move(evaluation.groundtruth), unit);
+  const std::vector<double> frames = readFrames(arguments, evaluation.groundtruth, unit, note);
 
   const auto evaluate = [&](const SystemFile& source, bool is_baseline) {
-    const Trajectory estimate = readTrajectory(source.file);
+    Trajectory estimate = readPoses(source.file, note);
+    const double seconds = unitBeside(arguments, timestampsOf(estimate), evaluation.groundtruth,
+                                      unit, source.file.string(), note);
+    estimate = withStampsTimes(std::move(estimate), seconds);
     Run run;
     run.source = source;
     run.is_baseline = is_baseline;
@@ -74,6 +144,7 @@ Evaluation evaluateRuns(const Arguments& arguments) {
         run.rpe = evaluateRpe(arguments, scale, evaluation.groundtruth, estimate);
       }
       run.tracking = countTracked(arguments, frames, estimate);
+      noteFewPairs(run, estimate, note);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(source.file.string() + ": " + error.what());
     }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,8 +34,11 @@ struct Evaluation {
   std::vector<Run> runs;  ///< The baseline's first, else as given.
 };
 
-/// Reads and evaluates all that the arguments name.
+/// Reads and evaluates all that the arguments name. Time stamps in other units than seconds are
+/// found out, the ground truth's by reviewStamps(), the others by where both overlap.
+/// @param note takes what was assumed or left out, a sentence each; before anything is thrown.
 /// @throws std::runtime_error naming the file at fault.
-Evaluation evaluateRuns(const Arguments& arguments);
+Evaluation evaluateRuns(const Arguments& arguments,
+                        const std::function<void(const std::string&)>& note);
 
 }  // namespace hmcdyn::evaluate

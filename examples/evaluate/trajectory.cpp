@@ -4,68 +4,111 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <istream>
+#include <iterator>
+#include <optional>
 #include <stdexcept>
-#include <string_view>
-#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "support/text_table.hpp"
+#include "support/time_stamps.hpp"
 
 namespace hmcdyn::evaluate {
 namespace {
 
-constexpr std::string_view kSeparators = " \t,\r";
-
-/// A line's fields. The views point into the line.
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  std::size_t begin = line.find_first_not_of(kSeparators);
-  while (begin != std::string_view::npos) {
-    const std::size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
-    fields.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kSeparators, end);
-  }
-  return fields;
-}
+constexpr std::array<const char*, 8> kNames{"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
 
 [[noreturn]] void failAt(const std::string& name, std::size_t line, const std::string& what) {
-  throw std::runtime_error(fmt::format("{}:{}: {}", name, line, what));
+  throw support::errorAt(name, line, what);
 }
 
-double parseFinite(std::string_view field, const char* what, const std::string& name,
-                   std::size_t line) {
-  double value = 0.0;
-  const char* end = field.data() + field.size();
-  const auto parsed = std::from_chars(field.data(), end, value);
-  if (parsed.ec != std::errc() || parsed.ptr != end) {
-    failAt(name, line, fmt::format("{} is '{}'; expected a number", what, field));
+/// Formats of others that a number of fields gives away.
+std::string guessOfFormat(const support::TextRow& row) {
+  switch (row.fields.size()) {
+    case 12:
+      return "; twelve numbers are a pose of KITTI's, which has no time stamp: convert the file";
+    case 17:
+      return "; seventeen are a state of EuRoC's (ns, position, then qw first): convert the file";
+    default:
+      return support::guessOfFields(row, kNames.size());
   }
-  if (!std::isfinite(value)) {
-    failAt(name, line, fmt::format("{} is {}; expected a finite number", what, field));
-  }
-  return value;
 }
 
-StampedPose parsePose(const std::vector<std::string_view>& fields, const std::string& name,
-                      std::size_t line) {
-  constexpr std::array<const char*, 8> kNames{"timestamp", "tx", "ty", "tz",
-                                              "qx",        "qy", "qz", "qw"};
-  if (fields.size() != kNames.size()) {
-    failAt(name, line,
-           fmt::format("{} fields; expected 8: timestamp tx ty tz qx qy qz qw", fields.size()));
+std::array<double, kNames.size()> parseValues(const support::TextRow& row,
+                                              const std::string& name) {
+  if (row.fields.size() != kNames.size()) {
+    failAt(name, row.line,
+           fmt::format("{} fields; expected 8: timestamp tx ty tz qx qy qz qw{}", row.fields.size(),
+                       guessOfFormat(row)));
   }
   std::array<double, kNames.size()> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
-    values.at(i) = parseFinite(fields[i], kNames.at(i), name, line);
+    if (!support::parseNumber(row.fields[i], values.at(i))) {
+      failAt(name, row.line,
+             fmt::format("{} is '{}'; expected a number", kNames.at(i),
+                         support::printable(row.fields[i])));
+    }
   }
+  return values;
+}
+
+/// What a file's lines came to, besides poses.
+struct Counts {
+  std::size_t lines = 0;
+  std::size_t without_pose = 0;
+  std::size_t first_without_pose = 0;  ///< Its line.
+  std::size_t far_from_unit = 0;
+  std::size_t first_far_from_unit = 0;  ///< Its line.
+  std::size_t repeated = 0;
+};
+
+std::vector<std::string> notesOf(const Counts& counts, const std::vector<double>& stamps,
+                                 const std::string& name) {
+  std::vector<std::string> notes;
+  if (counts.without_pose > 0) {
+    notes.push_back(fmt::format(
+        "{}: {} of {} lines are left out, the first is line {}: NaN, infinity or a zero quaternion",
+        name, counts.without_pose, counts.lines, counts.first_without_pose));
+  }
+  if (counts.far_from_unit > 0) {
+    notes.push_back(fmt::format(
+        "{}: {} of {} quaternions are far from norm 1, the first in line {}; they were normalised, "
+        "but are these quaternions qx qy qz qw?",
+        name, counts.far_from_unit, counts.lines, counts.first_far_from_unit));
+  }
+  if (10 * counts.repeated > counts.lines) {
+    notes.push_back(
+        fmt::format("{}: {} of {} lines repeat the time stamp of the line before, and the last of "
+                    "each counts{}",
+                    name, counts.repeated, counts.lines, support::guessOfRepeated(stamps)));
+  }
+  return notes;
+}
+
+/// The pose of a line, nothing where it says that there is none.
+std::optional<StampedPose> poseOf(const support::TextRow& row, const std::string& name,
+                                  Counts& counts) {
+  const std::array<double, kNames.size()> values = parseValues(row, name);
+  ++counts.lines;
   const auto [time, tx, ty, tz, qx, qy, qz, qw] = values;
   Eigen::Quaterniond rotation(qw, qx, qy, qz);
-  if (rotation.norm() < 1e-6) {
-    failAt(name, line, "the quaternion is zero; expected a rotation");
+  const double norm = rotation.norm();
+  const bool finite =
+      std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  if (!finite || norm < 1e-6 || !std::isfinite(norm)) {
+    if (counts.without_pose++ == 0) {
+      counts.first_without_pose = row.line;
+    }
+    return std::nullopt;
+  }
+  constexpr double kTolerance = 0.1;  // far more than rounding to two decimals
+  if (std::abs(norm - 1.0) > kTolerance && counts.far_from_unit++ == 0) {
+    counts.first_far_from_unit = row.line;
   }
   rotation.normalize();
   StampedPose stamped;
@@ -75,71 +118,111 @@ StampedPose parsePose(const std::vector<std::string_view>& fields, const std::st
   return stamped;
 }
 
-/// Calls `visit(fields, line_number)` for each line that is neither blank nor a comment.
-template <class Visit>
-void forEachDataLine(std::istream& stream, const std::string& name, const Visit& visit) {
-  std::string text;
-  std::size_t line = 0;
-  while (std::getline(stream, text)) {
-    ++line;
-    const std::vector<std::string_view> fields = split(text);
-    if (!fields.empty() && fields.front().front() != '#') {
-      visit(fields, line);
-    }
-  }
-  if (stream.bad()) {
-    failAt(name, line + 1, "reading failed");
-  }
-}
-
-std::ifstream open(const std::filesystem::path& file) {
+void requireFile(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file)) {
     throw std::runtime_error(fmt::format("{}: is a folder; expected a file", file.string()));
   }
-  std::ifstream stream(file);
-  if (!stream) {
+  if (!std::ifstream(file)) {
     throw std::runtime_error(
         fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
   }
-  return stream;
 }
 
 }  // namespace
 
-Trajectory readTrajectory(std::istream& stream, const std::string& name) {
-  Trajectory trajectory;
-  forEachDataLine(stream, name, [&](const auto& fields, std::size_t line) {
-    const StampedPose stamped = parsePose(fields, name, line);
-    if (!trajectory.empty() && stamped.timestamp < trajectory.back().timestamp) {
-      failAt(name, line,
+NotedTrajectory parseTrajectory(const std::string& text, const std::string& name) {
+  support::TextTable table = support::parseTable(support::toText(text, name), name,
+                                                 [](std::size_t n) { return n == kNames.size(); });
+  NotedTrajectory result;
+  result.notes = std::move(table.notes);
+  Trajectory& trajectory = result.poses;
+  Counts counts;
+  std::vector<double> stamps;
+  for (const support::TextRow& row : table.rows) {
+    const std::optional<StampedPose> stamped = poseOf(row, name, counts);
+    if (!stamped) {
+      continue;
+    }
+    stamps.push_back(stamped->timestamp);
+    if (!trajectory.empty() && stamped->timestamp < trajectory.back().timestamp) {
+      failAt(name, row.line,
              fmt::format("timestamp {:.6f} is before the previous one, {:.6f}; expected time to "
                          "increase",
-                         stamped.timestamp, trajectory.back().timestamp));
+                         stamped->timestamp, trajectory.back().timestamp));
     }
-    if (!trajectory.empty() && stamped.timestamp == trajectory.back().timestamp) {
-      trajectory.back() = stamped;
+    if (!trajectory.empty() && stamped->timestamp == trajectory.back().timestamp) {
+      trajectory.back() = *stamped;
+      ++counts.repeated;
     } else {
-      trajectory.push_back(stamped);
+      trajectory.push_back(*stamped);
     }
-  });
+  }
   if (trajectory.empty()) {
-    throw std::runtime_error(
-        fmt::format("{}: holds no pose; expected lines `timestamp tx ty tz qx qy qz qw`", name));
+    throw std::runtime_error(fmt::format(
+        "{}: holds no pose; expected lines `timestamp tx ty tz qx qy qz qw`{}", name,
+        counts.without_pose > 0
+            ? fmt::format(", found {} with NaN, infinity or a zero quaternion", counts.without_pose)
+            : ""));
+  }
+  const std::vector<std::string> more = notesOf(counts, stamps, name);
+  result.notes.insert(result.notes.end(), more.begin(), more.end());
+  return result;
+}
+
+NotedTrajectory readNotedTrajectory(const std::filesystem::path& file) {
+  requireFile(file);
+  return parseTrajectory(support::readBytes(file), file.string());
+}
+
+NotedTrajectory readTrajectoryFor(const std::filesystem::path& file, double first, double last) {
+  NotedTrajectory truth = readNotedTrajectory(file);
+  constexpr double kSlack = 0.02;  // s; the tolerance of association
+  const std::optional<double> seconds =
+      support::secondsByOverlap(timestampsOf(truth.poses), first, last, 1.0, kSlack);
+  if (!seconds) {
+    throw std::runtime_error(fmt::format(
+        "{}: has no pose at the frames' time: it covers {:.6f} to {:.6f}, the frames {:.6f} to "
+        "{:.6f} s; is it another recording's, or another clock's?",
+        file.string(), truth.poses.front().timestamp, truth.poses.back().timestamp, first, last));
+  }
+  if (*seconds != 1.0) {
+    truth.notes.push_back(
+        fmt::format("{}: a time stamp of 1 is read as {:g} s, since that fits the frames",
+                    file.string(), *seconds));
+  }
+  truth.poses = withStampsTimes(std::move(truth.poses), *seconds);
+  return truth;
+}
+
+Trajectory readTrajectory(std::istream& stream, const std::string& name) {
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parseTrajectory(text, name).poses;
+}
+
+Trajectory readTrajectory(const std::filesystem::path& file) {
+  return readNotedTrajectory(file).poses;
+}
+
+Trajectory withStampsTimes(Trajectory trajectory, double factor) {
+  for (StampedPose& stamped : trajectory) {
+    stamped.timestamp *= factor;
   }
   return trajectory;
 }
 
-Trajectory readTrajectory(const std::filesystem::path& file) {
-  std::ifstream stream = open(file);
-  return readTrajectory(stream, file.string());
-}
-
 std::vector<double> readTimestamps(const std::filesystem::path& file) {
-  std::ifstream stream = open(file);
+  requireFile(file);
+  const support::TextTable table = support::readTable(file, [](std::size_t) { return true; });
   std::vector<double> timestamps;
-  forEachDataLine(stream, file.string(), [&](const auto& fields, std::size_t line) {
-    timestamps.push_back(parseFinite(fields.front(), "timestamp", file.string(), line));
-  });
+  for (const support::TextRow& row : table.rows) {
+    double timestamp = 0.0;
+    if (!support::parseNumber(row.fields.front(), timestamp) || !std::isfinite(timestamp)) {
+      failAt(file.string(), row.line,
+             fmt::format("timestamp is '{}'; expected a number",
+                         support::printable(row.fields.front())));
+    }
+    timestamps.push_back(timestamp);
+  }
   if (timestamps.empty()) {
     throw std::runtime_error(fmt::format(
         "{}: holds no line; expected lines that start with a timestamp", file.string()));

@@ -2,6 +2,7 @@
 #include "support/command_line.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <cstdio>
 #include <memory>
@@ -106,7 +107,49 @@ std::string complaint(const char* what, const std::string& name,
          (suggestion ? "; did you mean " + *suggestion + "?" : "") + "\n";
 }
 
+/// "nan", "-inf" and their like, which CLI11 takes for numbers and no range refuses.
+bool isNoFiniteNumber(std::string value) {
+  value.erase(0, value.find_first_not_of("+-"));
+  std::transform(value.begin(), value.end(), value.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return value == "nan" || value == "inf" || value == "infinity";
+}
+
+CLI::Validator numberThat(bool (*fits)(double), const std::string& expected,
+                          const std::string& name) {
+  return {[fits, expected](const std::string& text) {
+            double value = 0.0;
+            return CLI::detail::lexical_cast(text, value) && fits(value)
+                       ? std::string()
+                       : "is " + text + "; expected " + expected;
+          },
+          name};
+}
+
+/// @throws CLI::ValidationError that names the option.
+void requireFiniteNumbers(const CLI::App& app) {
+  for (const CLI::Option* const option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (isNoFiniteNumber(value)) {
+        throw CLI::ValidationError(option->get_name(),
+                                   "is " + value + "; expected a finite number");
+      }
+    }
+  }
+  for (const CLI::App* const command : app.get_subcommands()) {
+    requireFiniteNumbers(*command);
+  }
+}
+
 }  // namespace
+
+CLI::Validator aboveZero() {
+  return numberThat([](double value) { return value > 0.0; }, "a number above 0", "POSITIVE");
+}
+
+CLI::Validator zeroOrMore() {
+  return numberThat([](double value) { return value >= 0.0; }, "0 or more", "NONNEGATIVE");
+}
 
 std::optional<std::string> nearest(const std::string& word,
                                    const std::vector<std::string>& candidates) {
@@ -154,6 +197,7 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
   useHelpFormatter(app);
   try {
     app.parse(argc, argv);
+    requireFiniteNumbers(app);
     if (check) {
       check();
     }

@@ -14,6 +14,11 @@ namespace hmcdyn::support {
 /// The exit code for a command line that is not understood.
 inline constexpr int kBadUsage = 2;
 
+/// What an option's number has to be, with a message that says so: CLI11's own validators name the
+/// largest double.
+CLI::Validator aboveZero();
+CLI::Validator zeroOrMore();
+
 /// The candidate that differs from `word` by the fewest letters inserted, left out, replaced or
 /// swapped with their neighbour, or that starts with it; the first at a tie. Nothing where more
 /// than a third of the letters differ (a word of two to five may differ by one).

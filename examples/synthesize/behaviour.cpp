@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -69,6 +70,7 @@ class Player {
     position_ = behaviour.start;
     heading_ = behaviour.heading;
     sitting_ = behaviour.starts_seated ? 1.0 : 0.0;
+    carry_ = behaviour.actions.front().carry;
     phase_ = random_.uniform();
     // NOLINTEND(cppcoreguidelines-prefer-member-initializer)
   }
@@ -100,6 +102,7 @@ class Player {
     const bool upright = sitting_ < 0.02;
     move(dt, upright ? wanted_speed : 0.0, upright ? wanted_heading : heading_);
     gesture_ = towards(gesture_, action.kind == Action::Kind::kWalk ? 0.0 : action.gesture, dt);
+    carry_ = towards(carry_, action.carry, 1.5 * dt);
     if (done) {
       index_ = (index_ + 1) % behaviour_.actions.size();
       elapsed_ = 0.0;
@@ -107,6 +110,7 @@ class Player {
     time_ += dt;
     return posture();
   }
+  std::size_t action() const { return index_; }
 
  private:
   void move(double dt, double wanted_speed, double wanted_heading) {
@@ -146,6 +150,11 @@ class Player {
     p.left_elbow = 0.95 * p.sit + lively * (0.9 + 0.5 * left_hand_.at(time_)) * (1.0 - 0.6 * p.sit);
     p.right_elbow =
         0.95 * p.sit + lively * (1.0 + 0.5 * right_hand_.at(time_)) * (1.0 - 0.6 * p.sit);
+    // The hands do not swing; they are as far apart as the elbows.
+    p.left_raise += 0.3 * carry_;
+    p.right_raise += 0.3 * carry_;
+    p.left_elbow += 1.1 * carry_;
+    p.right_elbow += 1.1 * carry_;
     p.left_spread = 0.25 * lively * (0.5 + 0.5 * left_hand_.at(0.6 * time_));
     p.right_spread = 0.25 * lively * (0.5 + 0.5 * right_hand_.at(0.7 * time_));
     return p;
@@ -162,6 +171,7 @@ class Player {
   double swing_ = 0.0;
   double sitting_ = 0.0;
   double gesture_ = 0.0;
+  double carry_ = 0.0;
   double elapsed_ = 0.0;
   double time_ = 0.0;
   std::size_t index_ = 0;
@@ -172,15 +182,20 @@ double mixed(double a, double b, double t) { return a + (b - a) * t; }
 }  // namespace
 
 Action walkTo(double x, double y, double speed) {
-  return {Action::Kind::kWalk, {x, y}, speed, 0.0, 0.0, 0.0};
+  return {Action::Kind::kWalk, {x, y}, speed, 0.0, 0.0, 0.0, 0.0};
 }
 
 Action standFor(double seconds, double heading, double gesture) {
-  return {Action::Kind::kStand, Eigen::Vector2d::Zero(), 0.0, seconds, heading, gesture};
+  return {Action::Kind::kStand, Eigen::Vector2d::Zero(), 0.0, seconds, heading, gesture, 0.0};
 }
 
 Action sitFor(double seconds, double heading, double gesture) {
-  return {Action::Kind::kSit, Eigen::Vector2d::Zero(), 0.0, seconds, heading, gesture};
+  return {Action::Kind::kSit, Eigen::Vector2d::Zero(), 0.0, seconds, heading, gesture, 0.0};
+}
+
+Action carrying(Action action) {
+  action.carry = 1.0;
+  return action;
 }
 
 Performance::Performance(const Behaviour& behaviour, double seconds) {
@@ -196,7 +211,10 @@ Performance::Performance(const Behaviour& behaviour, double seconds) {
   }
   const auto count = static_cast<std::size_t>((seconds + 2.0 * kBefore) * kRate) + 2;
   samples_.reserve(count);
+  starts_.assign(behaviour.actions.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < count; ++i) {
+    double& start = starts_[player.action()];
+    start = std::min(start, static_cast<double>(i) / kRate - kBefore);
     samples_.push_back(player.step(1.0 / kRate));
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -24,11 +25,14 @@ struct Action {
   double seconds = 1.0;                              ///< (s)
   double heading = 0.0;                              ///< (rad)
   double gesture = 0.0;                              ///< 0 = still, 1 = talks with both hands.
+  double carry = 0.0;                                ///< 1 = both hands hold something in front.
 };
 
 Action walkTo(double x, double y, double speed = 1.0);
 Action standFor(double seconds, double heading, double gesture = 0.0);
 Action sitFor(double seconds, double heading, double gesture = 0.0);
+/// The same with both hands on something in front.
+Action carrying(Action action);
 
 /// What a person does, from the first frame on; the actions repeat.
 struct Behaviour {
@@ -49,9 +53,13 @@ class Performance {
 
   /// Between the samples linear; before the first and after the last still.
   Posture at(double time) const;
+  /// When the action of this number begins for the first time (s); infinite = not while it lasts.
+  /// @throws std::out_of_range for a number that no action has.
+  double startOf(std::size_t action) const { return starts_.at(action); }
 
  private:
   std::vector<Posture> samples_;
+  std::vector<double> starts_;
 };
 
 }  // namespace hmcdyn::synthesize

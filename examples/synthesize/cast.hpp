@@ -10,9 +10,9 @@
 
 namespace hmcdyn::synthesize {
 
-/// Adds a person to a scene.
-inline void addPerson(Scene& scene, const BodyLook& look, const Behaviour& behaviour,
-                      double seconds) {
+/// Adds a person to a scene. @return what the person does, for things that he or she holds.
+inline std::shared_ptr<const Performance> addPerson(Scene& scene, const BodyLook& look,
+                                                    const Behaviour& behaviour, double seconds) {
   auto performance = std::make_shared<const Performance>(behaviour, seconds);
   Mover person;
   person.parts = buildBody(scene.textures, look);
@@ -20,6 +20,7 @@ inline void addPerson(Scene& scene, const BodyLook& look, const Behaviour& behav
     return bodyPoses(height, performance->at(time));
   };
   scene.movers.push_back(std::move(person));
+  return performance;
 }
 
 }  // namespace hmcdyn::synthesize

@@ -26,6 +26,7 @@ constexpr const char* kDescription =
     "  hmcdyn_synthesize --scene walking_xyz --output out/walking_xyz --frames 150\n"
     "  hmcdyn_synthesize --scene crowd --output out/crowd --box-drop 0.1 --box-jitter 4\n"
     "  hmcdyn_synthesize --scene empty --output out/exact --noise none\n"
+    "  hmcdyn_synthesize --scene empty --output out/biased --noise kinect_systematic\n"
     "\n"
     "Written: rgb/, depth/ (16-bit, 5000 = 1 m), mask/ (0 static, 128 person at rest, 255 "
     "moving),\n"
@@ -39,26 +40,31 @@ void parseSize(const std::string& text, SequenceOptions& options) {
 }
 
 void addOptions(CLI::App& app, SequenceOptions& options, std::string& size, bool& quiet) {
-  const std::map<std::string, NoiseModel> models{{"kinect", NoiseModel::kKinect},
-                                                 {"none", NoiseModel::kNone}};
+  const std::map<std::string, NoiseModel> models{
+      {"kinect", NoiseModel::kKinect},
+      {"kinect_systematic", NoiseModel::kKinectSystematic},
+      {"none", NoiseModel::kNone}};
   app.add_option("-s,--scene", options.scene, "Scene to render; --list shows them")
       ->capture_default_str();
   app.add_option("-o,--output", options.output,
                  "Folder to write; made if missing; not needed with --list");
   app.add_option("-n,--frames", options.frames, "Number of frames at 30 Hz")
-      ->check(CLI::PositiveNumber)
+      ->check(hmcdyn::support::aboveZero())
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Same seed, same bytes")->capture_default_str();
   app.add_option("--noise", options.noise,
-                 "kinect: depth noise and holes, RGB noise, motion blur, exposure; none: exact")
-      ->transform(CLI::CheckedTransformer(models, CLI::ignore_case).description("{kinect,none}"))
+                 "kinect: depth noise and holes, RGB noise, motion blur, exposure; "
+                 "kinect_systematic: that with a biased and misplaced depth image, as sensor.yaml "
+                 "tells; none: exact")
+      ->transform(CLI::CheckedTransformer(models, CLI::ignore_case)
+                      .description("{kinect,kinect_systematic,none}"))
       ->default_str("kinect");
   app.add_option("--size", size, "Image size, WIDTHxHEIGHT (px)")->capture_default_str();
   app.add_option("--trajectory", options.trajectory,
                  "TUM trajectory (timestamp tx ty tz qx qy qz qw) to move the camera along; turned "
                  "and shifted as a whole so that its mean pose is the scene's view")
       ->check(CLI::ExistingFile);
-  app.add_option("--exposure", options.exposure, "Shutter time of the kinect model (s)")
+  app.add_option("--exposure", options.exposure, "Shutter time of the kinect models (s)")
       ->capture_default_str();
   app.add_option("--moving-speed", options.moving_speed,
                  "Surfaces faster than this are moving in mask/ (m/s)")
@@ -67,10 +73,10 @@ void addOptions(CLI::App& app, SequenceOptions& options, std::string& size, bool
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   app.add_option("--box-jitter", options.box_jitter, "Standard deviation of a box's borders (px)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(hmcdyn::support::zeroOrMore())
       ->capture_default_str();
   app.add_option("-j,--threads", options.threads, "Threads; 0 = one a core")
-      ->check(CLI::NonNegativeNumber)
+      ->check(hmcdyn::support::zeroOrMore())
       ->capture_default_str();
   app.add_flag("--overwrite", options.overwrite, "Replace the files of a non-empty folder");
   app.add_flag("-q,--quiet", quiet, "No progress bar");

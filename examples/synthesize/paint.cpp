@@ -43,6 +43,12 @@ cv::Mat smoothNoise(cv::Size size, int cells, int octaves, double persistence, R
   return sum * (1.6 / total);
 }
 
+cv::Point randomPoint(Random& random, const Range& x, const Range& y) {
+  const int drawn_y = random.integer(y.low, y.high);
+  const int drawn_x = random.integer(x.low, x.high);
+  return {drawn_x, drawn_y};
+}
+
 cv::Mat plain(cv::Size size, const Color& color) {
   cv::Mat picture(size, CV_8UC3, color);
   return picture;
@@ -98,6 +104,12 @@ std::string randomWord(Random& random, int min_letters, int max_letters) {
     letter = kLetters[random.integer(0, static_cast<int>(sizeof kLetters) - 2)];
   }
   return word;
+}
+
+std::string randomWords(Random& random, const Range& first, const std::string& between,
+                        const Range& second) {
+  const std::string last = randomWord(random, second.low, second.high);
+  return randomWord(random, first.low, first.high) + between + last;
 }
 
 void writeLines(cv::Mat& picture, const cv::Rect& area, int line_height, const Color& ink,

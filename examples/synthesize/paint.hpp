@@ -18,6 +18,16 @@ using Color = cv::Scalar;
 /// @param cells cells of the coarsest octave along the width.
 cv::Mat smoothNoise(cv::Size size, int cells, int octaves, double persistence, Random& random);
 
+/// Whole numbers from `low` to `high`, both included.
+struct Range {
+  int low = 0;
+  int high = 0;
+};
+/// A point of random coordinates. y is drawn before x: compilers differ in the order in which they
+/// evaluate two arguments, and pictures must not. For the same reason no call in these files draws
+/// more than one of its arguments (what stands in braces is drawn in order).
+cv::Point randomPoint(Random& random, const Range& x, const Range& y);
+
 /// A picture of one colour.
 cv::Mat plain(cv::Size size, const Color& color);
 /// Adds `amplitude` (0..255) times a float field to all channels.
@@ -28,6 +38,9 @@ void addGrain(cv::Mat& picture, double deviation, Random& random);
 Color randomColor(Random& random, double low = 30.0, double high = 230.0);
 Color scaled(const Color& color, double factor);
 std::string randomWord(Random& random, int min_letters = 2, int max_letters = 9);
+/// Two words, the second one drawn first.
+std::string randomWords(Random& random, const Range& first, const std::string& between,
+                        const Range& second);
 /// Lines of words that fill a rectangle. @param line_height (px).
 void writeLines(cv::Mat& picture, const cv::Rect& area, int line_height, const Color& ink,
                 Random& random);

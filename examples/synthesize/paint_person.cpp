@@ -40,8 +40,9 @@ void drawPrint(cv::Mat& picture, const Color& second, Random& random) {
   const cv::Point middle(picture.cols / 2, picture.rows * 2 / 5);
   cv::circle(picture, middle, 52, second, cv::FILLED, cv::LINE_AA);
   for (int i = 0; i < 8; ++i) {
-    const cv::Point p(middle.x + random.integer(-48, 48), middle.y + random.integer(-48, 48));
-    cv::circle(picture, p, random.integer(5, 16), randomColor(random), cv::FILLED, cv::LINE_AA);
+    const cv::Point p = middle + randomPoint(random, {-48, 48}, {-48, 48});
+    const Color color = randomColor(random);
+    cv::circle(picture, p, random.integer(5, 16), color, cv::FILLED, cv::LINE_AA);
   }
   cv::putText(picture, randomWord(random, 4, 6), {middle.x - 66, middle.y + 95},
               cv::FONT_HERSHEY_TRIPLEX, 1.3, second, 3, cv::LINE_AA);
@@ -91,8 +92,8 @@ cv::Mat cloth(Cloth kind, const Color& color, const Color& second, std::uint64_t
   // Folds and seams.
   addField(picture, smoothNoise(picture.size(), 5, 4, 0.65, random), 20.0);
   for (int fold = 0; fold < 14; ++fold) {
-    const cv::Point p(random.integer(0, 511), random.integer(0, 511));
-    const cv::Point q(p.x + random.integer(-60, 60), p.y + random.integer(-60, 60));
+    const cv::Point p = randomPoint(random, {0, 511}, {0, 511});
+    const cv::Point q = p + randomPoint(random, {-60, 60}, {-60, 60});
     const auto& base = picture.at<cv::Vec3b>(p);
     const double shade = random.chance(0.7) ? 0.65 : 1.3;
     cv::line(picture, p, q, Color(base[0] * shade, base[1] * shade, base[2] * shade), 2,
@@ -118,9 +119,10 @@ cv::Mat head(const Color& skin_color, const Color& hair, bool beard, bool glasse
   Random random(seed);
   cv::Mat picture = plain({512, 256}, hair);
   for (int i = 0; i < 900; ++i) {
-    const cv::Point p(random.integer(0, 511), random.integer(0, 255));
-    cv::line(picture, p, {p.x + random.integer(-6, 6), p.y + random.integer(8, 24)},
-             scaled(hair, random.uniform(0.5, 1.7)), 1, cv::LINE_AA);
+    const cv::Point p = randomPoint(random, {0, 511}, {0, 255});
+    const Color color = scaled(hair, random.uniform(0.5, 1.7));
+    cv::line(picture, p, {p.x + random.integer(-6, 6), p.y + random.integer(8, 24)}, color, 1,
+             cv::LINE_AA);
   }
   cv::rectangle(picture, {0, 205, 512, 51}, skin_color, cv::FILLED);  // neck
   cv::ellipse(picture, {256, 160}, {98, 92}, 0, 0, 360, skin_color, cv::FILLED, cv::LINE_AA);

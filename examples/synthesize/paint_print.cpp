@@ -69,9 +69,9 @@ cv::Mat sciencePoster(std::uint64_t seed) {
   cv::Mat picture = plain({724, 1024}, Color(245, 245, 240));
   const Color theme = randomColor(random, 40, 190);
   cv::rectangle(picture, {0, 0, 724, 130}, theme, cv::FILLED);
-  cv::putText(picture, randomWord(random, 7, 9) + " " + randomWord(random, 5, 8), {40, 65},
-              cv::FONT_HERSHEY_DUPLEX, 1.7, Color(255, 255, 255), 3, cv::LINE_AA);
-  cv::putText(picture, randomWord(random, 9, 12) + ", " + randomWord(random, 7, 10), {44, 110},
+  cv::putText(picture, randomWords(random, {7, 9}, " ", {5, 8}), {40, 65}, cv::FONT_HERSHEY_DUPLEX,
+              1.7, Color(255, 255, 255), 3, cv::LINE_AA);
+  cv::putText(picture, randomWords(random, {9, 12}, ", ", {7, 10}), {44, 110},
               cv::FONT_HERSHEY_SIMPLEX, 0.9, Color(240, 240, 240), 2, cv::LINE_AA);
   for (int column = 0; column < 2; ++column) {
     const int x = 30 + column * 345;
@@ -97,7 +97,7 @@ cv::Mat artPoster(std::uint64_t seed) {
   cv::Mat picture = plain({512, 724}, randomColor(random, 60, 240));
   for (int i = 0; i < 42; ++i) {
     const Color color = randomColor(random, 10, 250);
-    const cv::Point p(random.integer(0, 511), random.integer(0, 723));
+    const cv::Point p = randomPoint(random, {0, 511}, {0, 723});
     const int size = random.integer(14, 90);
     switch (random.integer(0, 3)) {
       case 0:
@@ -111,15 +111,16 @@ cv::Mat artPoster(std::uint64_t seed) {
         std::vector<cv::Point> corners;
         corners.reserve(6);
         for (int k = 0; k < random.integer(3, 6); ++k) {
-          corners.emplace_back(p.x + random.integer(-size, size),
-                               p.y + random.integer(-size, size));
+          corners.push_back(p + randomPoint(random, {-size, size}, {-size, size}));
         }
         cv::fillPoly(picture, std::vector<std::vector<cv::Point>>{corners}, color, cv::LINE_AA);
         break;
       }
-      default:
+      default: {
+        const int thickness = random.integer(2, 12);
         cv::line(picture, p, {p.x + random.integer(-160, 160), p.y + random.integer(-160, 160)},
-                 color, random.integer(2, 12), cv::LINE_AA);
+                 color, thickness, cv::LINE_AA);
+      }
     }
   }
   cv::rectangle(picture, {0, 0, 512, 724}, Color(240, 240, 240), 22);
@@ -145,7 +146,7 @@ cv::Mat mapPoster(std::uint64_t seed) {
     }
   }
   for (int road = 0; road < 16; ++road) {
-    cv::Point p(random.integer(0, 1023), random.integer(0, 723));
+    cv::Point p = randomPoint(random, {0, 1023}, {0, 723});
     const double heading = random.uniform(0.0, 6.28);
     for (int step = 0; step < 18; ++step) {
       const double turn = heading + 0.5 * random.normal();
@@ -156,10 +157,11 @@ cv::Mat mapPoster(std::uint64_t seed) {
     }
   }
   for (int town = 0; town < 46; ++town) {
-    const cv::Point p(random.integer(20, 900), random.integer(20, 700));
+    const cv::Point p = randomPoint(random, {20, 900}, {20, 700});
     cv::circle(picture, p, random.integer(3, 7), Color(30, 30, 30), cv::FILLED, cv::LINE_AA);
+    const double size = random.uniform(0.5, 0.9);
     cv::putText(picture, randomWord(random, 4, 9), {p.x + 9, p.y + 5}, cv::FONT_HERSHEY_SIMPLEX,
-                random.uniform(0.5, 0.9), Color(20, 20, 20), 2, cv::LINE_AA);
+                size, Color(20, 20, 20), 2, cv::LINE_AA);
   }
   cv::rectangle(picture, {0, 0, 1024, 724}, Color(60, 60, 60), 10);
   return picture;
@@ -171,9 +173,11 @@ cv::Mat photoPoster(std::uint64_t seed) {
   cv::resize(picture, picture, {640, 480});
   addField(picture, smoothNoise(picture.size(), 8, 5, 0.7, random), 45.0);
   for (int i = 0; i < 26; ++i) {
-    cv::ellipse(picture, {random.integer(0, 639), random.integer(180, 470)},
-                {random.integer(5, 34), random.integer(5, 34)}, random.uniform(0, 180), 0, 360,
-                randomColor(random, 10, 240), cv::FILLED, cv::LINE_AA);
+    const Color color = randomColor(random, 10, 240);
+    const double angle = random.uniform(0, 180);
+    const cv::Size axes{random.integer(5, 34), random.integer(5, 34)};
+    cv::ellipse(picture, {random.integer(0, 639), random.integer(180, 470)}, axes, angle, 0, 360,
+                color, cv::FILLED, cv::LINE_AA);
   }
   cv::rectangle(picture, {0, 0, 640, 480}, Color(35, 35, 35), 14);
   return picture;
@@ -232,8 +236,8 @@ cv::Mat whiteboard(std::uint64_t seed) {
         break;
       default:
         for (int y = area.y + 30; y < area.y + area.height; y += 46) {
-          cv::putText(picture, randomWord(random, 1, 2) + " = " + randomWord(random, 1, 3) + "/2",
-                      {area.x, y}, cv::FONT_HERSHEY_COMPLEX, 0.9, pen, 2, cv::LINE_AA);
+          cv::putText(picture, randomWords(random, {1, 2}, " = ", {1, 3}) + "/2", {area.x, y},
+                      cv::FONT_HERSHEY_COMPLEX, 0.9, pen, 2, cv::LINE_AA);
         }
     }
   }
@@ -297,12 +301,14 @@ cv::Mat bookSpines(std::uint64_t seed) {
     cv::Mat upright = plain({512, 64}, color);  // drawn lying, then turned
     const Color ink = color[1] > 130 ? Color(25, 25, 25) : Color(235, 240, 240);
     for (int band = 0; band < random.integer(1, 3); ++band) {
-      cv::rectangle(upright, cv::Rect(random.integer(5, 480), 0, random.integer(4, 26), 64),
-                    randomColor(random, 20, 240), cv::FILLED);
+      const Color stripe = randomColor(random, 20, 240);
+      const int width = random.integer(4, 26);
+      cv::rectangle(upright, cv::Rect(random.integer(5, 480), 0, width, 64), stripe, cv::FILLED);
     }
-    cv::putText(upright, randomWord(random, 4, 8) + " " + randomWord(random, 4, 8),
-                {random.integer(20, 60), 44}, cv::FONT_HERSHEY_DUPLEX, random.uniform(0.9, 1.4),
-                ink, 2, cv::LINE_AA);
+    const double size = random.uniform(0.9, 1.4);
+    const int left = random.integer(20, 60);
+    cv::putText(upright, randomWords(random, {4, 8}, " ", {4, 8}), {left, 44},
+                cv::FONT_HERSHEY_DUPLEX, size, ink, 2, cv::LINE_AA);
     cv::line(upright, {0, 1}, {511, 1}, scaled(color, 0.5), 3);
     cv::line(upright, {0, 62}, {511, 62}, scaled(color, 0.5), 3);
     cv::rotate(upright, upright, cv::ROTATE_90_CLOCKWISE);
@@ -317,8 +323,11 @@ cv::Mat bookCover(std::uint64_t seed) {
   cv::Mat picture = plain({256, 362}, color);
   addField(picture, smoothNoise(picture.size(), 4, 4, 0.6, random), 16.0);
   for (int i = 0; i < 9; ++i) {
-    cv::circle(picture, {random.integer(20, 236), random.integer(120, 300)}, random.integer(8, 46),
-               randomColor(random), random.chance(0.5) ? 4 : cv::FILLED, cv::LINE_AA);
+    const int thickness = random.chance(0.5) ? 4 : cv::FILLED;
+    const Color ink = randomColor(random);
+    const int radius = random.integer(8, 46);
+    cv::circle(picture, {random.integer(20, 236), random.integer(120, 300)}, radius, ink, thickness,
+               cv::LINE_AA);
   }
   cv::rectangle(picture, {14, 22, 228, 84}, scaled(color, 0.45), cv::FILLED);
   cv::putText(picture, randomWord(random, 5, 7), {26, 60}, cv::FONT_HERSHEY_DUPLEX, 1.3,
@@ -332,11 +341,13 @@ cv::Mat mugPrint(std::uint64_t seed) {
   Random random(seed);
   cv::Mat picture = plain({256, 128}, randomColor(random, 80, 240));
   for (int x = 20; x < 256; x += 60) {
-    cv::circle(picture, {x, random.integer(40, 90)}, random.integer(10, 24), randomColor(random),
-               cv::FILLED, cv::LINE_AA);
+    const Color color = randomColor(random);
+    const int radius = random.integer(10, 24);
+    cv::circle(picture, {x, random.integer(40, 90)}, radius, color, cv::FILLED, cv::LINE_AA);
   }
-  cv::putText(picture, randomWord(random, 4, 6), {80, 80}, cv::FONT_HERSHEY_DUPLEX, 1.3,
-              randomColor(random, 0, 80), 3, cv::LINE_AA);
+  const Color ink = randomColor(random, 0, 80);
+  cv::putText(picture, randomWord(random, 4, 6), {80, 80}, cv::FONT_HERSHEY_DUPLEX, 1.3, ink, 3,
+              cv::LINE_AA);
   cv::rectangle(picture, {0, 0, 256, 10}, Color(60, 50, 50), cv::FILLED);
   return picture;
 }

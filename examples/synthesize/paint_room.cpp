@@ -12,16 +12,17 @@ namespace {
 /// Thin marks as use leaves them: scratches, scuffs, spots.
 void addScuffs(cv::Mat& picture, int count, double strength, Random& random) {
   for (int i = 0; i < count; ++i) {
-    const cv::Point from(random.integer(0, picture.cols - 1), random.integer(0, picture.rows - 1));
+    const cv::Point from = randomPoint(random, {0, picture.cols - 1}, {0, picture.rows - 1});
     const cv::Vec3b base = picture.at<cv::Vec3b>(from);
     const double change = random.uniform(-strength, 0.6 * strength);
     const Color color(base[0] + change, base[1] + change, base[2] + change);
     if (random.chance(0.5)) {
-      const cv::Point to(from.x + random.integer(-60, 60), from.y + random.integer(-25, 25));
+      const cv::Point to = from + randomPoint(random, {-60, 60}, {-25, 25});
       cv::line(picture, from, to, color, 1, cv::LINE_AA);
     } else {
-      cv::ellipse(picture, from, {random.integer(1, 6), random.integer(1, 4)},
-                  random.uniform(0.0, 180.0), 0.0, 360.0, color, cv::FILLED, cv::LINE_AA);
+      const double angle = random.uniform(0.0, 180.0);
+      cv::ellipse(picture, from, {random.integer(1, 6), random.integer(1, 4)}, angle, 0.0, 360.0,
+                  color, cv::FILLED, cv::LINE_AA);
     }
   }
 }
@@ -51,8 +52,8 @@ void addWoodGrain(cv::Mat& picture, const cv::Rect& area, double strength, Rando
   addField(part, field, strength);
   for (int knot = 0; knot < area.width * area.height / 90000 + (random.chance(0.4) ? 1 : 0);
        ++knot) {
-    const cv::Point centre(random.integer(10, std::max(11, part.cols - 10)),
-                           random.integer(3, std::max(4, part.rows - 3)));
+    const cv::Point centre =
+        randomPoint(random, {10, std::max(11, part.cols - 10)}, {3, std::max(4, part.rows - 3)});
     const int size = random.integer(3, 8);
     cv::ellipse(part, centre, {2 * size, size}, 0.0, 0.0, 360.0, Color(40, 70, 105), 1,
                 cv::LINE_AA);
@@ -129,15 +130,15 @@ cv::Mat concrete(const Color& color, std::uint64_t seed) {
   addGrain(picture, 5.0, random);
   addScuffs(picture, 300, 55.0, random);
   for (int i = 0; i < 9; ++i) {  // cracks
-    cv::Point p(random.integer(0, 1023), random.integer(0, 1023));
+    cv::Point p = randomPoint(random, {0, 1023}, {0, 1023});
     for (int step = 0; step < 30; ++step) {
-      const cv::Point q(p.x + random.integer(-14, 16), p.y + random.integer(-12, 14));
+      const cv::Point q = p + randomPoint(random, {-14, 16}, {-12, 14});
       cv::line(picture, p, q, scaled(color, 0.55), 1, cv::LINE_AA);
       p = q;
     }
   }
   for (int i = 0; i < 7; ++i) {  // tape marks
-    const cv::Point p(random.integer(50, 970), random.integer(50, 970));
+    const cv::Point p = randomPoint(random, {50, 970}, {50, 970});
     const Color tape = random.chance(0.5) ? Color(60, 200, 230) : Color(200, 120, 40);
     cv::line(picture, {p.x - 18, p.y}, {p.x + 18, p.y}, tape, 7);
     if (random.chance(0.6)) {
@@ -151,7 +152,8 @@ cv::Mat ceilingTiles(std::uint64_t seed) {
   Random random(seed);
   cv::Mat picture = plain({512, 512}, {205, 210, 212});
   for (int i = 0; i < 1500; ++i) {
-    cv::circle(picture, {random.integer(0, 511), random.integer(0, 511)}, random.integer(0, 1),
+    const int radius = random.integer(0, 1);
+    cv::circle(picture, {random.integer(0, 511), random.integer(0, 511)}, radius,
                Color(165, 168, 170), cv::FILLED);
   }
   for (int i = 0; i < 512; i += 256) {
@@ -248,12 +250,14 @@ cv::Mat windowView(std::uint64_t seed) {
   }
   for (int i = 0; i < 900; ++i) {  // trees
     const int cluster = random.integer(0, 4) * 120 + 20;
+    const double red = random.uniform(40, 90);
+    const double green = random.uniform(70, 150);
+    const double blue = random.uniform(30, 80);
+    const int radius = random.integer(3, 9);
     cv::circle(picture,
                {cluster + static_cast<int>(28.0 * random.normal()),
                 410 + static_cast<int>(40.0 * random.normal())},
-               random.integer(3, 9),
-               Color(random.uniform(30, 80), random.uniform(70, 150), random.uniform(40, 90)),
-               cv::FILLED, cv::LINE_AA);
+               radius, Color(blue, green, red), cv::FILLED, cv::LINE_AA);
   }
   return picture;
 }

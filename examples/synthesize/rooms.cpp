@@ -168,9 +168,9 @@ void furnishWalls(Furnisher& f, const Palette& palette, TextureLibrary& textures
 
 }  // namespace
 
-RoomBounds furnishOffice(Scene& scene, std::uint64_t seed, bool with_occluders) {
+RoomBounds furnishOffice(Scene& scene, const Palette& palette, std::uint64_t seed,
+                         bool with_occluders) {
   const RoomBounds bounds(Eigen::Vector3d(-4.0, -3.8, 0.0), Eigen::Vector3d(4.0, 2.7, 2.85));
-  const Palette palette(scene.textures, seed);
   addLamps(scene, bounds);
   Furnisher f(scene.room, scene.lighting, palette, seed);
   ShellTextures shell;
@@ -193,9 +193,8 @@ RoomBounds furnishOffice(Scene& scene, std::uint64_t seed, bool with_occluders) 
   return bounds;
 }
 
-RoomBounds furnishBareOffice(Scene& scene, std::uint64_t seed) {
+RoomBounds furnishBareOffice(Scene& scene, const Palette& palette, std::uint64_t seed) {
   const RoomBounds bounds(Eigen::Vector3d(-4.0, -3.8, 0.0), Eigen::Vector3d(4.0, 2.7, 2.85));
-  const Palette palette(scene.textures, seed);
   addLamps(scene, bounds);
   Furnisher f(scene.room, scene.lighting, palette, seed);
   ShellTextures shell;

@@ -84,9 +84,8 @@ void hangPictures(Furnisher& f, const Palette& palette) {
 
 }  // namespace
 
-RoomBounds furnishHall(Scene& scene, std::uint64_t seed) {
+RoomBounds furnishHall(Scene& scene, const Palette& palette, std::uint64_t seed) {
   const RoomBounds bounds(Eigen::Vector3d(-3.6, -4.0, 0.0), Eigen::Vector3d(3.6, 2.4, 3.3));
-  const Palette palette(scene.textures, seed);
   for (const float x : {-2.2f, 2.2f}) {
     for (const float y : {-2.6f, -0.6f, 1.4f}) {
       scene.lighting.lamps.push_back({{x, y, 2.95f}, 1.0f});

@@ -1,54 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "synthesize/scene_catalog.hpp"
 
-#include <functional>
 #include <stdexcept>
 #include <utility>
 
-#include "synthesize/camera_path.hpp"
-#include "synthesize/cast.hpp"
-#include "synthesize/pi.hpp"
+#include "synthesize/stage.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kLeft = kPi;
-constexpr double kRight = 0.0;
-constexpr double kTowards = -0.5 * kPi;  // the usual camera
-
-/// A scene while it is put together.
-struct Stage {
-  SceneOptions options;
-  BuiltScene built;
-  int people = 0;
-
-  void person(Behaviour behaviour) {
-    const std::uint64_t seed = mixBits(options.seed * 1000 + static_cast<std::uint64_t>(people++));
-    if (behaviour.seed == 0) {
-      behaviour.seed = seed;
-    }
-    addPerson(built.scene, randomLook(seed), behaviour, options.seconds);
-  }
-  void office(bool occluders = false) {
-    built.bounds = furnishOffice(built.scene, options.seed, occluders);
-  }
-  void bareOffice() { built.bounds = furnishBareOffice(built.scene, options.seed); }
-  void hall() { built.bounds = furnishHall(built.scene, options.seed); }
-  void camera(CameraPath path) { built.scene.camera = std::move(path); }
-  /// With the unsteadiness of somebody who moves the camera on purpose, or holds it still.
-  void carried(CameraPath path) { camera(handHeld(std::move(path), 0.004, 0.0045, options.seed)); }
-  void held(CameraPath path) { camera(handHeld(std::move(path), 0.0015, 0.0022, options.seed)); }
-};
-
-const Vector3d kOfficeEye(0.0, -2.5, 1.45);
-const Vector3d kOfficeTarget(0.0, 0.6, 0.95);
-const Vector3d kHallEye(0.0, -2.6, 1.45);
-const Vector3d kHallTarget(0.0, 2.2, 1.05);
-
-Eigen::Isometry3d officeView() { return lookAt(kOfficeEye, kOfficeTarget); }
-Eigen::Isometry3d hallView() { return lookAt(kHallEye, kHallTarget); }
 
 /// Walks to and fro in front of the desks along y = `lane`, then once around them.
 Behaviour aroundDesks(double lane, double speed) {
@@ -168,11 +129,6 @@ void hallWalkers(Stage& stage) {
                    walkTo(0.9, 1.2, 0.9)};
   stage.person(third);
 }
-
-struct Recipe {
-  SceneInfo info;
-  std::function<void(Stage&)> stage;
-};
 
 void addOfficeRecipes(std::vector<Recipe>& r) {
   r.push_back({{"walking_xyz", "office, two people walk and sit down, camera along x, y and z"},
@@ -356,6 +312,7 @@ std::vector<Recipe> allRecipes() {
   addOfficeRecipes(recipes);
   addHallRecipes(recipes);
   addHardRecipes(recipes);
+  addThingRecipes(recipes);
   return recipes;
 }
 

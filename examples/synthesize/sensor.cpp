@@ -42,6 +42,9 @@ Sensor::Sensor(NoiseModel model, const KinectOptions& options, cv::Size size, st
   if (model_ == NoiseModel::kNone) {
     return;
   }
+  if (model_ == NoiseModel::kKinectSystematic) {
+    systematic_ = drawSystematicError(options_.systematic, size, seed);
+  }
   Random random(seed, 77);
   normals_.resize(kNormals);
   for (float& normal : normals_) {
@@ -59,7 +62,7 @@ Sensor::Sensor(NoiseModel model, const KinectOptions& options, cv::Size size, st
 }
 
 SensorFrame Sensor::measure(const RenderedFrame& frame, std::uint64_t index, double time) const {
-  if (model_ == NoiseModel::kKinect) {
+  if (model_ != NoiseModel::kNone) {
     return {measureColor(frame.color, index, time), measureDepth(frame, index)};
   }
   SensorFrame exact{frame.color.clone(), cv::Mat(frame.depth.size(), CV_16UC1)};
@@ -151,25 +154,29 @@ cv::Mat Sensor::measureDepth(const RenderedFrame& frame, std::uint64_t index) co
   }
   cv::GaussianBlur(noise, noise, {3, 3}, 0.8);
 
+  const auto shift_u = static_cast<int>(std::lround(systematic_.shift.x));
+  const auto shift_v = static_cast<int>(std::lround(systematic_.shift.y));
   cv::Mat depth = cv::Mat::zeros(truth.size(), CV_16UC1);
   for (int v = 0; v < truth.rows; ++v, n += static_cast<std::size_t>(random.bits())) {
     for (int u = 0; u < truth.cols; ++u, n += 3) {
-      const auto lateral = [&](std::size_t i) {
-        return static_cast<int>(
-            std::lround(o.lateral * static_cast<double>(normals_[(n + i) & (kNormals - 1)])));
+      const auto lateral = [&](double shift, std::size_t i) {
+        return static_cast<int>(std::lround(
+            shift + o.lateral * static_cast<double>(normals_[(n + i) & (kNormals - 1)])));
       };
-      const int x = std::clamp(u + lateral(0), 0, truth.cols - 1);
-      const int y = std::clamp(v + lateral(1), 0, truth.rows - 1);
+      const int x = std::clamp(u + lateral(systematic_.shift.x, 0), 0, truth.cols - 1);
+      const int y = std::clamp(v + lateral(systematic_.shift.y, 1), 0, truth.rows - 1);
       const auto z = static_cast<double>(truth.at<float>(y, x));
       const auto facing = static_cast<double>(frame.facing.at<float>(y, x));
       if (z < o.min_depth || z > o.max_depth || facing < o.min_facing ||
           shadow.at<std::uint8_t>(y, x) != 0) {
         continue;
       }
-      const auto& c = frame.color.at<cv::Vec3b>(v, u);
+      const int seen_u = std::clamp(u + shift_u, 0, truth.cols - 1);
+      const int seen_v = std::clamp(v + shift_v, 0, truth.rows - 1);
+      const auto& c = frame.color.at<cv::Vec3b>(seen_v, seen_u);
       const double brightness = 0.3 * c[2] + 0.5 * c[1] + 0.2 * c[0];
       const auto chance = static_cast<double>(normals_[(n + 2) & (kNormals - 1)]);
-      const bool at_edge = static_cast<double>(jumpAt(truth, u, v)) > 0.04 + 0.03 * z;
+      const bool at_edge = static_cast<double>(jumpAt(truth, seen_u, seen_v)) > 0.04 + 0.03 * z;
       if (brightness + 5.0 * chance < o.dark || (at_edge && chance > 0.0)) {
         continue;
       }
@@ -179,7 +186,8 @@ cv::Mat Sensor::measureDepth(const RenderedFrame& frame, std::uint64_t index) co
       const double deviation = o.axial_base + o.axial_growth * beyond * beyond +
                                0.0001 / std::sqrt(z) * grazing * grazing;
       const double noisy =
-          std::max(0.1, z + deviation * static_cast<double>(noise.at<float>(v, u)));
+          std::max(0.1, systematic_.biased(z, u, v) +
+                            deviation * static_cast<double>(noise.at<float>(v, u)));
       const double disparity =
           std::round(o.disparity_constant / noisy / o.disparity_step) * o.disparity_step;
       depth.at<std::uint16_t>(v, u) = toFileDepth(o.disparity_constant / disparity);

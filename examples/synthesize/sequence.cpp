@@ -68,6 +68,7 @@ void prepareFolder(const SequenceOptions& options) {
     throw std::invalid_argument("output is " + folder.string() +
                                 ", which is not empty; expected a new folder, or --overwrite");
   }
+  fs::remove(folder / kSystematicErrorFile, error);  // of another sensor
   for (const char* part : {"rgb", "depth", "mask"}) {
     // Pictures of an earlier, longer sequence must not stay behind.
     fs::remove_all(folder / part, error);
@@ -261,9 +262,12 @@ void writeSequence(const SequenceOptions& options,
   render_options.width = options.width;
   render_options.height = options.height;
   render_options.camera = scaledCamera(options.width, options.height);
-  render_options.exposure = options.noise == NoiseModel::kKinect ? options.exposure : 0.0;
+  render_options.exposure = options.noise != NoiseModel::kNone ? options.exposure : 0.0;
   render_options.moving_speed = options.moving_speed;
   const Sensor sensor(options.noise, {}, {options.width, options.height}, options.seed);
+  if (options.noise == NoiseModel::kKinectSystematic) {
+    writeSystematicError(sensor.systematicError(), options.output / kSystematicErrorFile);
+  }
 
   // Each thread renders whole frames with a renderer of its own; a frame depends on its number
   // alone, so the order in which they are finished does not matter.

@@ -21,7 +21,7 @@ struct SequenceOptions {
   int width = 640;                   ///< (px)
   int height = 480;                  ///< (px)
   std::filesystem::path trajectory;  ///< TUM trajectory that replaces the scene's; may be empty.
-  double exposure = 0.012;           ///< Of the Kinect model (s); 0 without noise.
+  double exposure = 0.012;           ///< Of the Kinect models (s); 0 without noise.
   double moving_speed = 0.01;        ///< Faster surfaces are moving in mask/ (m/s).
   double box_drop = 0.0;             ///< Probability that a box is missing, 0..1.
   double box_jitter = 0.0;           ///< Standard deviation of a box's borders (px).
@@ -32,6 +32,10 @@ struct SequenceOptions {
 
 inline constexpr double kFrameRate = 30.0;           ///< (Hz)
 inline constexpr double kFirstStamp = 1700000000.0;  ///< Time stamp of frame 0 (s).
+
+/// What is wrong with the camera of NoiseModel::kKinectSystematic, as writeSystematicError() has
+/// it.
+inline constexpr const char* kSystematicErrorFile = "sensor.yaml";
 
 /// TUM's freiburg3 camera, scaled to an image size.
 PinholeCamera scaledCamera(int width, int height);

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "support/text_table.hpp"
+#include "support/time_stamps.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
@@ -72,49 +73,70 @@ Isometry3d smoothed(const std::vector<StampedPose>& poses, double time) {
 
 }  // namespace
 
+namespace {
+
+StampedPose parsePose(const support::TextRow& row, const std::filesystem::path& path) {
+  const auto fail = [&](const std::string& problem) {
+    throw support::errorAt(path.string(), row.line, problem);
+  };
+  constexpr std::size_t kValues = 8;
+  if (row.fields.size() != kValues) {
+    fail(std::to_string(row.fields.size()) + " values, expected timestamp tx ty tz qx qy qz qw" +
+         support::guessOfFields(row, kValues));
+  }
+  std::vector<double> values;
+  for (const std::string& word : row.fields) {
+    double value = 0.0;
+    if (!support::parseNumber(word, value) || !std::isfinite(value)) {
+      fail("'" + support::printable(word) + "' is not a finite number");
+    }
+    values.push_back(value);
+  }
+  const Quaterniond q(values[7], values[4], values[5], values[6]);
+  if (q.norm() < 1e-3) {
+    fail("the quaternion has no length");
+  }
+  StampedPose pose;
+  pose.time = values[0];
+  pose.camera_to_world.translation() = Vector3d(values[1], values[2], values[3]);
+  pose.camera_to_world.linear() = q.normalized().toRotationMatrix();
+  return pose;
+}
+
+/// Makes seconds of stamps in another unit, where that is plain.
+void toSeconds(std::vector<StampedPose>& poses) {
+  std::vector<double> stamps;
+  stamps.reserve(poses.size());
+  for (const StampedPose& pose : poses) {
+    stamps.push_back(pose.time);
+  }
+  const support::StampReview review = support::reviewStamps(stamps);
+  if (review.doubt.empty() && review.unit != support::TimeUnit::kSeconds) {
+    for (StampedPose& pose : poses) {
+      pose.time *= support::secondsOf(review.unit, 1.0);
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<StampedPose> readTrajectory(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) {
+  if (!std::filesystem::exists(path)) {
     throw std::runtime_error(path.string() + ": cannot be read");
   }
   std::vector<StampedPose> poses;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const std::size_t start = line.find_first_not_of(" \t\r");
-    if (start == std::string::npos || line[start] == '#') {
-      continue;
+  const support::TextTable table =
+      support::readTable(path, [](std::size_t fields) { return fields == 8; });
+  for (const support::TextRow& row : table.rows) {
+    const StampedPose pose = parsePose(row, path);
+    if (!poses.empty() && pose.time < poses.back().time) {
+      throw support::errorAt(path.string(), row.line, "the time stamp falls");
     }
-    const auto fail = [&](const std::string& problem) {
-      throw std::runtime_error(path.string() + ":" + std::to_string(number) + ": " + problem);
-    };
-    std::istringstream words(line);
-    std::vector<double> values;
-    for (std::string word; words >> word;) {
-      char* end = nullptr;
-      values.push_back(std::strtod(word.c_str(), &end));
-      if (*end != '\0' || !std::isfinite(values.back())) {
-        fail("'" + word + "' is not a finite number");
-      }
+    if (poses.empty() || pose.time != poses.back().time) {
+      poses.push_back(pose);  // motion capture repeats itself, TUM's fr3_walking_static for one
     }
-    if (values.size() != 8) {
-      fail(std::to_string(values.size()) + " values, expected timestamp tx ty tz qx qy qz qw");
-    }
-    const Quaterniond q(values[7], values[4], values[5], values[6]);
-    if (q.norm() < 1e-3) {
-      fail("the quaternion has no length");
-    }
-    if (!poses.empty() && values[0] < poses.back().time) {
-      fail("the time stamp falls");
-    }
-    if (!poses.empty() && values[0] == poses.back().time) {
-      continue;  // motion capture repeats itself now and then, TUM's fr3_walking_static for one
-    }
-    StampedPose pose;
-    pose.time = values[0];
-    pose.camera_to_world.translation() = Vector3d(values[1], values[2], values[3]);
-    pose.camera_to_world.linear() = q.normalized().toRotationMatrix();
-    poses.push_back(pose);
   }
+  toSeconds(poses);
   return poses;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/filter_stage.hpp>
 #include <hmcdyn/motion_belief.hpp>
 #include <hmcdyn/types.hpp>

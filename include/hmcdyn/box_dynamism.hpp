@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <hmcdyn/detail/bits.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <hmcdyn/clustering.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
@@ -94,6 +95,22 @@ struct ClusterFilterResult {
 
 namespace detail {
 
+/// Labels index the clusters' summaries: one that is out of range would read and write beside them.
+inline void checkClusterLabels(const Clustering& clustering) {
+  int smallest = 0;
+  int largest = kNoise;
+  for (const int label : clustering.label) {
+    smallest = std::min(smallest, label);
+    largest = std::max(largest, label);
+  }
+  if (clustering.clusters < 0 || smallest < kNoise || largest >= clustering.clusters) {
+    throw std::invalid_argument(
+        "filterClusters: cluster labels reach from " + std::to_string(smallest) + " to " +
+        std::to_string(largest) + " in a clustering of " + std::to_string(clustering.clusters) +
+        " clusters; expected -1 (noise), or a number below that of the clusters");
+  }
+}
+
 inline std::vector<ClusterSummary> summarizeClusters(Span<const float> depth,
                                                      Span<const float> distance,
                                                      const Clustering& clustering,
@@ -158,7 +175,8 @@ inline bool withinDynamicDepth(const std::vector<ClusterSummary>& clusters, floa
 /// @param threshold N distance thresholds (px), from testBoxes.
 /// @param clustering of these N points.
 /// @param frame_mean_distance over all key points of the frame that have a distance (px).
-/// @throws std::invalid_argument when sizes differ or an option is out of range.
+/// @throws std::invalid_argument when sizes differ, an option is out of range, or a cluster label
+/// is neither kNoise nor below clustering.clusters.
 inline ClusterFilterResult filterClusters(Span<const float> depth, Span<const float> distance,
                                           Span<const float> threshold, const Clustering& clustering,
                                           float frame_mean_distance,
@@ -172,6 +190,7 @@ inline ClusterFilterResult filterClusters(Span<const float> depth, Span<const fl
         " distances, " + std::to_string(threshold.size()) + " thresholds, " +
         std::to_string(clustering.label.size()) + " cluster labels; expected equal sizes");
   }
+  detail::checkClusterLabels(clustering);
   std::vector<ClusterSummary>& clusters = reuse.clusters;
   clusters = detail::summarizeClusters(depth, distance, clustering, std::move(clusters));
 

@@ -19,6 +19,7 @@
 #include <hmcdyn/detail/kd_tree_clusters.hpp>
 #include <hmcdyn/detail/minkowski.hpp>
 #include <hmcdyn/detail/planar_points.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
@@ -101,8 +102,8 @@ inline const Clustering& clusterPlanar(const ClusteringOptions& options,
 /// and every point with a coordinate that is not finite, is noise. Clusters are numbered by their
 /// lexicographically smallest core point. So labels do not depend on the order of the points.
 ///
-/// Takes O(N) time for evenly spread points in the plane with p = 2, else O(N log N); O(N^2) where
-/// the neighbourhoods hold most of the points.
+/// Takes O(N) time for evenly spread points in the plane with p = 2, else O(N log N); O(M^2) where
+/// the neighbourhoods hold most of the M different points: equal ones cost no more than sorting.
 ///
 /// @param points D-by-N, a point a column.
 /// @param workspace keeps the memory and the result; valid until the next call with it. For points

@@ -6,15 +6,16 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
 
 #include <hmcdyn/belief_verdict.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/ego_motion.hpp>
 #include <hmcdyn/filter_stage.hpp>
 #include <hmcdyn/fundamental.hpp>
 #include <hmcdyn/motion_belief.hpp>
 #include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/pose.hpp>
 #include <hmcdyn/regions.hpp>
 #include <hmcdyn/surface_depth.hpp>
 #include <hmcdyn/types.hpp>
@@ -31,7 +32,7 @@ enum class DistanceKind : std::uint8_t {
 /// The options of every step, and how much optical flow is spent.
 struct DynamicFeatureFilterOptions {
   OpticalFlowOptions flow;                         ///< Step 1.
-  MotionModelOptions motion;                       ///< Step 2.
+  TwoViewOptions two_view;                         ///< Step 2.
   DistanceKind distance = DistanceKind::kTwoView;  ///< Which distance step 3 measures.
   EgoMotionOptions ego_motion;                     ///< Step 3, for the ego-motion distance.
   FilterStageOptions stage;                        ///< Steps 4 to 7.
@@ -52,6 +53,12 @@ struct DynamicFeatureFilterOptions {
   MotionBeliefOptions belief;           ///< How the points vote.
   BeliefVerdictOptions belief_verdict;  ///< What the votes decide.
 
+  /// Where the matches outside the boxes do not determine a model,
+  /// EarlierFrame::current_from_earlier speaks for the camera, where it is given: a few matches at
+  /// the image's border, or a crowd, would not. false = as the paper has it: whatever most matches
+  /// do is the camera's motion.
+  bool require_known_camera = true;
+
   /// A model explains its frame pair well enough to speak of motion when the median distance of its
   /// matches stays below this (px); distances to other frames are not used.
   float max_median_distance = 0.5f;
@@ -64,8 +71,13 @@ struct EarlierFrame {
   /// Depths (m, CV_32FC1, 0 or NaN = none), of the image's size; needed for the ego-motion
   /// distance.
   cv::Mat depth;
-  /// Motion of the camera since then, as far as it is known; needed for the ego-motion distance.
-  std::optional<Eigen::Isometry3d> current_from_earlier = std::nullopt;
+  /// Motion of the camera since then, as far as it is known: needed for the ego-motion distance,
+  /// and speaks for the camera where the matches do not, for which a prediction is exact enough.
+  std::optional<Pose> current_from_earlier = std::nullopt;
+  /// N columns (px) where the caller's own matching found the key points in this frame; NaN = not
+  /// found, and optical flow looks for it. Empty = none. They must outlive the call.
+  Span<const float> matched_u = {};
+  Span<const float> matched_v = {};  ///< N rows; the same.
   /// Time since then (s); 0 = unknown. With it the flow to the frame before in the list, prolonged,
   /// is where the search starts.
   double age = 0.0;
@@ -77,7 +89,7 @@ struct DynamicFeatureFilterInput {
   KeyPointsView points;                  ///< N key points of the current frame.
   Span<const DetectionBox> boxes;        ///< Of the current frame.
   Span<const EarlierFrame> earlier;      ///< Frames to compare with; may be empty.
-  PinholeCamera camera;                  ///< Needed for the ego-motion distance.
+  PinholeCamera camera;                  ///< Needed where current_from_earlier is used.
   DepthImageView depth = {};             ///< Of the current frame (m); empty = no beliefs.
   /// `belief` of the result for earlier[0]; null = none.
   const MotionBelief* memory = nullptr;
@@ -91,9 +103,15 @@ struct DynamicFeatureFilterInput {
 
 /// What one earlier frame contributed.
 struct EarlierFrameReport {
-  FlowMatches flow;            ///< Where the N key points were.
-  MotionModelEstimate motion;  ///< The model, and whether F was defined.
-  bool used = false;           ///< Its distances count.
+  FlowMatches flow;        ///< Where the N key points were.
+  TwoViewEstimate motion;  ///< The model, and whether F was defined.
+  bool used = false;       ///< Its distances count.
+  /// Somebody knows how the camera moved: enough background, what earlier frames knew to be at
+  /// rest, or a prediction. Else the model is of whatever most points do, a crowd perhaps, and
+  /// points outside all boxes have no distance from it.
+  bool camera_known = false;
+  /// The motion of the camera since then, where one was predicted and could be made exact.
+  std::optional<Pose> current_from_earlier = std::nullopt;
 };
 
 /// What the filter found out about a frame of N key points.
@@ -102,6 +120,9 @@ struct DynamicFeatureFilterResult {
   FilterStageResult stage;                  ///< Labels, weights, clusters; boxes and frame.
   std::vector<EarlierFrameReport> earlier;  ///< One an earlier frame.
   MotionBelief belief;  ///< The next frame's memory; empty where no beliefs are formed.
+  /// There were earlier frames to compare with, but nobody knows how the camera moved
+  /// (EarlierFrameReport::camera_known): points outside all boxes are not called dynamic.
+  bool camera_unknown = false;
 };
 
 /// Memory that filterDynamicFeatures reuses from frame to frame.
@@ -116,8 +137,10 @@ struct DynamicFeatureFilterWorkspace {
 /// point's distance (the largest over the earlier frames whose model holds), labels and weighs the
 /// points, and lets them vote on each other. Pure: the same input and seeds give the same result.
 ///
-/// Where boxes cover too much of the image, points in them speak for the camera's motion as well,
-/// but for those that the memory knows to move: a crowd would be taken for the world.
+/// Where the matches outside the boxes do not determine it, a known motion
+/// (EarlierFrame::current_from_earlier) speaks for the camera. Without one, points in boxes do as
+/// well, but for those that the memory knows to move: a crowd would be taken for the world. Where
+/// nothing of all that is known, points outside all boxes stay static, and the result says so.
 ///
 /// Without a box and without a memory of something that moves there is nothing to decide: no flow
 /// is computed, and all points are static (flow_background = 0 computes it all the same).
@@ -129,6 +152,7 @@ struct DynamicFeatureFilterWorkspace {
 /// is none of it and stays static. Only where flow is spent, and which matches speak for the
 /// camera's motion, is decided by the boxes around the regions, since a mask may end short of a
 /// silhouette. A mask that fills its box gives the result of the box.
+/// Points that the caller has matched already (EarlierFrame::matched_u) are not followed again.
 /// @throws std::invalid_argument for a null pyramid, unequal arrays, images of unequal size, boxes
 /// and labels at once, regions without labels, labels of another type, a
 /// missing motion, depth or camera where the ego-motion distance is asked for, a memory of unequal

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/epipolar.hpp>
 #include <hmcdyn/types.hpp>
 

@@ -11,6 +11,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <hmcdyn/detail/requirements.hpp>
+#include <hmcdyn/plain_matrix.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
@@ -53,9 +55,39 @@ inline const char* toString(TwoViewModelKind kind) noexcept {
 /// The motion model of a frame pair: the matrix takes pixels of the earlier frame to the current
 /// one, as F of eq. 2 (current^T F earlier = 0) or as a homography (current ~ H earlier).
 struct TwoViewModel {
-  TwoViewModelKind kind = TwoViewModelKind::kNone;       ///< What `matrix` is.
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  ///< F or H; else not used.
+  TwoViewModelKind kind = TwoViewModelKind::kNone;  ///< What `matrix` is.
+  /// F or H; else not used.
+  PlainMatrix<3, 3> matrix{{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
 };
+
+/// The fundamental matrix of a known motion, F = K^-T [t]x R K^-1 (Hartley, Zisserman 2004, 9.2);
+/// zero where the camera only rotates.
+/// @param current_from_earlier motion that takes points from the earlier camera's frame to the
+/// current one's: p_current = R p_earlier + t (m).
+inline Eigen::Matrix3d fundamentalOfMotion(const PinholeCamera& camera,
+                                           const Eigen::Isometry3d& current_from_earlier) {
+  Eigen::Matrix3d inverse;  // K^-1
+  inverse << 1.0 / camera.fx, 0.0, -camera.cx / camera.fx, 0.0, 1.0 / camera.fy,
+      -camera.cy / camera.fy, 0.0, 0.0, 1.0;
+  const Eigen::Vector3d t = current_from_earlier.translation();
+  Eigen::Matrix3d cross;
+  cross << 0.0, -t.z(), t.y(), t.z(), 0.0, -t.x(), -t.y(), t.x(), 0.0;
+  return inverse.transpose() * cross * current_from_earlier.linear() * inverse;
+}
+
+/// What a known motion does to the background: epipolar lines, or, where it moves no point that is
+/// a metre or more away by min_parallax beyond what the rotation does, the homography K R K^-1.
+/// @param min_parallax (px)
+inline TwoViewModel modelOfMotion(const PinholeCamera& camera,
+                                  const Eigen::Isometry3d& current_from_earlier,
+                                  double min_parallax = 0.1) {
+  if (camera.fx * current_from_earlier.translation().norm() >= min_parallax) {  // at 1 m
+    return {TwoViewModelKind::kFundamental, fundamentalOfMotion(camera, current_from_earlier)};
+  }
+  Eigen::Matrix3d k;
+  k << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
+  return {TwoViewModelKind::kHomography, k * current_from_earlier.linear() * k.inverse()};
+}
 
 /// Epipolar line (X, Y, Z) in the current frame of a pixel of the earlier frame, eq. 3:
 /// X u + Y v + Z = 0.

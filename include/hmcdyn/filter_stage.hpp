@@ -17,6 +17,7 @@
 #include <hmcdyn/cluster_filter.hpp>
 #include <hmcdyn/clustering.hpp>
 #include <hmcdyn/detail/laned_sum.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/peer_rules.hpp>
 #include <hmcdyn/types.hpp>
 #include <hmcdyn/weights.hpp>
@@ -26,7 +27,8 @@ namespace hmcdyn {
 /// Who decides which points are dynamic.
 enum class FilterRule : std::uint8_t {
   kNone,          ///< Nobody: every point is static.
-  kBox,           ///< Every point in every box is dropped; the paper's RS ablation.
+  kBox,           ///< Every point in every box is dropped.
+  kDynamicBox,    ///< Every point in every dynamic box is dropped; the paper's RS ablation.
   kEpipolar,      ///< One threshold in dynamic boxes; the paper's DF ablation.
   kTwoThreshold,  ///< SG-SLAM.
   kChiSquare,     ///< OVD-SLAM.
@@ -35,18 +37,20 @@ enum class FilterRule : std::uint8_t {
 };
 
 /// All rules.
-inline constexpr FilterRule kFilterRules[] = {FilterRule::kNone,      FilterRule::kBox,
-                                              FilterRule::kEpipolar,  FilterRule::kTwoThreshold,
-                                              FilterRule::kChiSquare, FilterRule::kDepthRansac,
-                                              FilterRule::kHmc};
+inline constexpr FilterRule kFilterRules[] = {FilterRule::kNone,         FilterRule::kBox,
+                                              FilterRule::kDynamicBox,   FilterRule::kEpipolar,
+                                              FilterRule::kTwoThreshold, FilterRule::kChiSquare,
+                                              FilterRule::kDepthRansac,  FilterRule::kHmc};
 
-/// "none", "box", "epipolar", "two_threshold", "chi2", "depth_ransac" or "hmc".
+/// "none", "box", "dynamic_box", "epipolar", "two_threshold", "chi2", "depth_ransac" or "hmc".
 inline const char* toString(FilterRule rule) noexcept {
   switch (rule) {
     case FilterRule::kNone:
       return "none";
     case FilterRule::kBox:
       return "box";
+    case FilterRule::kDynamicBox:
+      return "dynamic_box";
     case FilterRule::kEpipolar:
       return "epipolar";
     case FilterRule::kTwoThreshold:
@@ -254,6 +258,9 @@ inline const std::vector<std::uint8_t>& peerFlags(const KeyPointsView& points,
   switch (options.rule) {
     case FilterRule::kBox:
       flags = dropWholeBoxes(points.size(), workspace.membership, std::move(flags));
+      return flags;
+    case FilterRule::kDynamicBox:
+      flags = workspace.in_dynamic_box;
       return flags;
     case FilterRule::kEpipolar:
       flags =

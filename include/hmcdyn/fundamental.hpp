@@ -5,13 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/epipolar.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
 
 /// Which matches speak for the camera's motion, and when F counts as defined.
-struct MotionModelOptions {
+struct TwoViewOptions {
   int min_matches = 12;  ///< Fewer matches than this give no model; at least 8.
 
   /// The model is estimated from the matches outside every box when there are this many of them ...
@@ -56,10 +57,11 @@ enum class MatchSource : std::uint8_t {
   kBackground,  ///< Those outside every box.
   kAtRest,      ///< Those known to be at rest: the boxes left too little background.
   kNotMoving,   ///< Those not known to move: too few were known to be at rest.
+  kPrediction,  ///< A predicted motion, made exact by the points that agree with it.
 };
 
 /// The motion model of a frame pair, and what it was made of.
-struct MotionModelEstimate {
+struct TwoViewEstimate {
   TwoViewModel model;  ///< What to measure distances with; kNone only where nothing fits.
   /// Whether F is defined, and why not.
   FundamentalVerdict verdict = FundamentalVerdict::kTooFewMatches;
@@ -74,11 +76,11 @@ struct MotionModelEstimate {
   bool fundamentalDefined() const noexcept { return verdict == FundamentalVerdict::kDefined; }
 };
 
-/// Whether the matches outside every box are enough for estimateMotionModel() to leave the others
+/// Whether the matches outside every box are enough for estimateTwoViewModel() to leave the others
 /// out.
-/// @throws std::invalid_argument as estimateMotionModel().
+/// @throws std::invalid_argument as estimateTwoViewModel().
 bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                        const MotionModelOptions& options = {});
+                        const TwoViewOptions& options = {});
 
 /// Estimates what the camera's motion does to the background: a fundamental matrix by MAGSAC
 /// (Barath, Noskova, Matas 2019) and a normalised eight-point refit with Sampson weights (Hartley
@@ -88,16 +90,15 @@ bool backgroundSuffices(const PointPairsView& pairs, Span<const DetectionBox> bo
 /// @param pairs of N points; those with a NaN are left out.
 /// @param boxes whose points are left out while enough others remain.
 /// @throws std::invalid_argument when sizes differ or an option is out of range.
-MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                                        const MotionModelOptions& options = {});
+TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                     const TwoViewOptions& options = {});
 
 /// The same, where earlier frames have shown what moves and what is at rest. That decides where the
 /// boxes leave too little, so that a crowd that fills the image is not taken for the world.
 ///
 /// @param known of the N points; empty = nothing is known.
 /// @throws std::invalid_argument as above, and when `known` has another size.
-MotionModelEstimate estimateMotionModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
-                                        Span<const KnownMotion> known,
-                                        const MotionModelOptions& options);
+TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                     Span<const KnownMotion> known, const TwoViewOptions& options);
 
 }  // namespace hmcdyn

@@ -6,6 +6,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/regions.hpp>
 
 namespace hmcdyn {

@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/surface_depth.hpp>
 #include <hmcdyn/types.hpp>
 
@@ -135,19 +136,19 @@ struct MotionBeliefInput {
 
 namespace detail {
 
-/// Votes as arrays: a vote of `value` counts with `weight`.
+/// Votes as arrays: a vote of `value` counts with `weight`. Vectors, not arrays of Eigen's: these
+/// are freed by another function than they came from where library and user differ in their flags.
 struct Votes {
-  Eigen::ArrayXf u, v, depth, value, weight;
-  Eigen::Index count = 0;
+  std::vector<float> u, v, depth, value, weight;  // of at least `count` elements
+  std::size_t count = 0;
 
   void reserve(std::size_t n) {
-    const auto size = static_cast<Eigen::Index>(n);
-    if (u.size() < size) {
-      u.resize(size);
-      v.resize(size);
-      depth.resize(size);
-      value.resize(size);
-      weight.resize(size);
+    if (u.size() < n) {
+      u.resize(n);
+      v.resize(n);
+      depth.resize(n);
+      value.resize(n);
+      weight.resize(n);
     }
     count = 0;
   }
@@ -167,21 +168,24 @@ struct VoteSum {
 };
 
 inline VoteSum countVotes(const Votes& votes, float u, float v, float depth, float sigma,
-                          const MotionBeliefOptions& options, Eigen::ArrayXf& scratch) {
-  const Eigen::Index n = votes.count;
-  if (n == 0) {
+                          const MotionBeliefOptions& options, std::vector<float>& scratch) {
+  if (votes.count == 0) {
     return {};
   }
+  const auto n = static_cast<Eigen::Index>(votes.count);
+  const auto first = [n](const std::vector<float>& values) {
+    return Eigen::Map<const Eigen::ArrayXf>(values.data(), n);
+  };
   const float per_pixel = 1.0f / sigma;
   const float per_metre =
       1.0f / (options.depth_sigma_floor + options.depth_sigma_quadratic * depth * depth);
-  auto kernel = scratch.head(n);
-  kernel = (1.0f - 0.125f * (((votes.u.head(n) - u) * per_pixel).square() +
-                             ((votes.v.head(n) - v) * per_pixel).square() +
-                             ((votes.depth.head(n) - depth) * per_metre).square()))
+  Eigen::Map<Eigen::ArrayXf> kernel(scratch.data(), n);
+  kernel = (1.0f - 0.125f * (((first(votes.u) - u) * per_pixel).square() +
+                             ((first(votes.v) - v) * per_pixel).square() +
+                             ((first(votes.depth) - depth) * per_metre).square()))
                .max(0.0f);
   kernel = kernel.square().square();
-  return {(kernel * votes.value.head(n)).sum(), (kernel * votes.weight.head(n)).sum()};
+  return {(kernel * first(votes.value)).sum(), (kernel * first(votes.weight)).sum()};
 }
 
 /// What a point's own distance says: 0 at rest .. 1 moving.
@@ -210,7 +214,7 @@ struct MotionBeliefWorkspace {
   detail::Votes memory;          ///< All that the frame before believed.
   detail::Votes dynamic_memory;  ///< What it believed to move.
   detail::Votes certain_memory;  ///< What it was certain of.
-  Eigen::ArrayXf scratch;        ///< Of one count of votes.
+  std::vector<float> scratch;    ///< Of one count of votes.
 };
 
 namespace detail {
@@ -257,9 +261,8 @@ inline void collectMemory(const MotionBelief& memory, const MotionBeliefOptions&
 }
 
 inline void makeRoom(std::size_t votes, MotionBeliefWorkspace& workspace) {
-  const auto most = static_cast<Eigen::Index>(votes);
-  if (workspace.scratch.size() < most) {
-    workspace.scratch.resize(most);
+  if (workspace.scratch.size() < votes) {
+    workspace.scratch.resize(votes);
   }
 }
 

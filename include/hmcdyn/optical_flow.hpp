@@ -7,6 +7,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <hmcdyn/box_dynamism.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {

@@ -10,9 +10,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
+#include <hmcdyn/depth_error.hpp>
+#include <hmcdyn/detail/requirements.hpp>
+#include <hmcdyn/plain_matrix.hpp>
+#include <hmcdyn/pose.hpp>
 #include <hmcdyn/span.hpp>
 #include <hmcdyn/types.hpp>
 
@@ -21,7 +22,7 @@ namespace hmcdyn {
 /// What joins a point's two pixel rows where the point has a depth.
 enum class DepthRow : std::uint8_t {
   kNone,       ///< Nothing: two rows.
-  kDepth,      ///< (z_observed - z) / sigma_z(z_observed), in metres before the division.
+  kDepth,      ///< (z_observed - z) / sigma_z, in metres before the division.
   kDisparity,  ///< Column in a right camera, u - bf / z, with the pixels' sigma: the stereo row
                ///< that RGB-D systems borrow (ORB-SLAM2, Mur-Artal and Tardos 2017). It suits
                ///< depths from a stereo pair; those of a depth camera say more through kDepth,
@@ -59,6 +60,9 @@ struct PoseObservations {
   Span<const float> sigma;   ///< Standard deviation of a pixel coordinate (px), > 0; empty = 1.
   Span<const float> depth;   ///< Observed depths (m); 0, negative or NaN = none; empty = none.
   Span<const float> weight;  ///< lambda_i of eq. 7, 0..1; empty = 1. 0 leaves the point out.
+  /// Standard deviation of a depth (m), > 0; empty = by PoseRefinementOptions::depth_error. Only
+  /// for DepthRow::kDepth.
+  Span<const float> depth_sigma = {};
 
   /// N, the number of observations.
   std::size_t size() const noexcept { return x.size(); }
@@ -67,11 +71,9 @@ struct PoseObservations {
 /// What is minimised, by whom, and when it ends.
 struct PoseRefinementOptions {
   DepthRow depth_row = DepthRow::kNone;  ///< Of points with a depth.
-  /// sigma_z(z) = depth_noise_floor + depth_noise_quadratic * z^2. The quadratic term is the
-  /// Kinect's as Khoshelham and Oude Elberink measured it (Sensors 12, 2012): 3.6 cm at 5 m; the
-  /// floor keeps near points from an unreal certainty.
-  double depth_noise_floor = 0.001;         ///< m
-  double depth_noise_quadratic = 1.425e-3;  ///< 1/m
+  /// sigma_z of a depth without one of its own: depthError(), noise and systematic error together,
+  /// since nothing is known of where the map points come from.
+  DepthErrorModel depth_error;
   double baseline_fx = 40.0;  ///< bf of the virtual right camera (px m); 40 suits a Kinect.
 
   RobustLoss loss = RobustLoss::kHuber;        ///< Of the rounds before the plain ones.
@@ -114,7 +116,7 @@ const char* toString(PoseRefinementTermination termination) noexcept;
 /// The refined pose, and how far it can be trusted.
 struct PoseRefinementResult {
   /// Refined pose; the initial one, untouched, unless succeeded().
-  Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
+  Pose camera_from_world;
   /// Covariance of delta = (rotation vector (rad), translation (m)), in this order, that leads
   /// from the estimate to the truth by a motion in the camera's frame:
   /// T_true = (Exp(omega), v) * camera_from_world. It is the inverse of
@@ -123,7 +125,7 @@ struct PoseRefinementResult {
   /// lambda_i. The outlier rounds drop good points too and make it optimistic: with 1 px of noise
   /// on 100 points the squared errors are 17 % larger than it says. None where the points leave a
   /// direction undetermined (H singular) or without a refined pose.
-  std::optional<Eigen::Matrix<double, 6, 6>> covariance;
+  std::optional<PlainMatrix<6, 6>> covariance;
 
   std::vector<std::uint8_t> inlier;  ///< Per point: 1 = in front of the camera, weight > 0, and
                                      ///< its unweighted squared residual within 95 % of chi2.
@@ -182,8 +184,7 @@ struct PoseRefinementResult {
 ///   pose that is not finite or not a rigid motion, focal lengths that are not positive, options
 ///   out of their range. Everything else comes back in the result.
 PoseRefinementResult refinePose(const PoseObservations& observations, const PinholeCamera& camera,
-                                const Eigen::Isometry3d& initial,
-                                const PoseRefinementOptions& options = {});
+                                const Pose& initial, const PoseRefinementOptions& options = {});
 
 namespace detail {
 class CollapsedPoseProblem;
@@ -204,8 +205,7 @@ class PoseRefinementWorkspace {
 
  private:
   friend PoseRefinementResult refinePose(const PoseObservations& observations,
-                                         const PinholeCamera& camera,
-                                         const Eigen::Isometry3d& initial,
+                                         const PinholeCamera& camera, const Pose& initial,
                                          const PoseRefinementOptions& options,
                                          PoseRefinementWorkspace& workspace);
   std::unique_ptr<detail::CollapsedPoseProblem> problem_;
@@ -214,8 +214,7 @@ class PoseRefinementWorkspace {
 /// The same for callers that refine every frame: once the workspace has seen as many points, only
 /// the result's own arrays and message are allocated.
 PoseRefinementResult refinePose(const PoseObservations& observations, const PinholeCamera& camera,
-                                const Eigen::Isometry3d& initial,
-                                const PoseRefinementOptions& options,
+                                const Pose& initial, const PoseRefinementOptions& options,
                                 PoseRefinementWorkspace& workspace);
 
 }  // namespace hmcdyn

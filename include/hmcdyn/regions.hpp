@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <hmcdyn/box_dynamism.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {
@@ -44,6 +45,45 @@ struct LabelRegion {
 /// The region of a point that lies in none.
 inline constexpr int kNoRegion = -1;
 
+namespace detail {
+
+/// Finds the region of a label: the first of those that have it. Few regions are searched one by
+/// one, which takes no memory; many by halves.
+class RegionOfLabel {
+ public:
+  explicit RegionOfLabel(Span<const LabelRegion> regions) : regions_(regions) {
+    constexpr std::size_t kFew = 16;
+    if (regions.size() <= kFew) {
+      return;
+    }
+    by_label_.reserve(regions.size());
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      by_label_.emplace_back(regions[r].label, static_cast<int>(r));
+    }
+    std::sort(by_label_.begin(), by_label_.end());
+  }
+
+  /// kNoRegion where none has it.
+  int operator()(std::int64_t label) const {
+    if (by_label_.empty()) {
+      const LabelRegion* const found =
+          std::find_if(regions_.begin(), regions_.end(),
+                       [&](const LabelRegion& candidate) { return candidate.label == label; });
+      return found == regions_.end() ? kNoRegion : static_cast<int>(found - regions_.begin());
+    }
+    const auto found =
+        std::partition_point(by_label_.begin(), by_label_.end(),
+                             [&](const auto& candidate) { return candidate.first < label; });
+    return found == by_label_.end() || found->first != label ? kNoRegion : found->second;
+  }
+
+ private:
+  Span<const LabelRegion> regions_;
+  std::vector<std::pair<int, int>> by_label_;  ///< Label and region; empty where there are few.
+};
+
+}  // namespace detail
+
 /// Region of each of the N key points: the position in `regions` of the label at the point's
 /// nearest pixel; kNoRegion for other labels and for points outside the image or not finite. Where
 /// a label stands twice in `regions`, the first counts.
@@ -59,6 +99,7 @@ std::vector<int> regionsOfPoints(const KeyPointsView& points, const LabelImageVi
                                 "; expected an image, and a stride of its width or more");
   }
   std::vector<int> region(points.size(), kNoRegion);
+  const detail::RegionOfLabel region_of(regions);
   for (std::size_t i = 0; i < points.size(); ++i) {
     // Compared as float: what is far outside, or NaN, must not reach the cast to int.
     const float column = std::floor(points.u[i] + 0.5f);
@@ -69,12 +110,7 @@ std::vector<int> regionsOfPoints(const KeyPointsView& points, const LabelImageVi
     }
     const auto label =
         static_cast<std::int64_t>(labels.at(static_cast<int>(column), static_cast<int>(row)));
-    const LabelRegion* const found =
-        std::find_if(regions.begin(), regions.end(),
-                     [&](const LabelRegion& candidate) { return candidate.label == label; });
-    if (found != regions.end()) {
-      region[i] = static_cast<int>(found - regions.begin());
-    }
+    region[i] = region_of(label);
   }
   return region;
 }
@@ -129,23 +165,28 @@ std::vector<DetectionBox> boundingBoxes(const LabelImageView<Label>& labels,
     boxes.push_back({0.0f, 0.0f, -1.0f, -1.0f, region.class_id, region.score});
   }
   std::vector<std::uint8_t> seen(regions.size(), 0);
+  const detail::RegionOfLabel region_of(regions);
+  std::int64_t last = static_cast<std::int64_t>(labels.at(0, 0));
+  int region = region_of(last);
   for (int row = 0; row < labels.height; ++row) {
     for (int column = 0; column < labels.width; ++column) {
       const auto label = static_cast<std::int64_t>(labels.at(column, row));
-      for (std::size_t r = 0; r < regions.size(); ++r) {
-        if (regions[r].label != label) {
-          continue;
-        }
-        const auto x = static_cast<float>(column);
-        const auto y = static_cast<float>(row);
-        DetectionBox& box = boxes[r];
-        box.x_min = seen[r] == 0 ? x : std::min(box.x_min, x);
-        box.y_min = seen[r] == 0 ? y : box.y_min;  // rows come in order
-        box.x_max = std::max(box.x_max, x);
-        box.y_max = y;
-        seen[r] = 1;
-        break;  // the first region of a label counts
+      if (label != last) {  // most pixels have their neighbour's label
+        last = label;
+        region = region_of(label);
       }
+      if (region == kNoRegion) {
+        continue;
+      }
+      const auto r = static_cast<std::size_t>(region);
+      const auto x = static_cast<float>(column);
+      const auto y = static_cast<float>(row);
+      DetectionBox& box = boxes[r];
+      box.x_min = seen[r] == 0 ? x : std::min(box.x_min, x);
+      box.y_min = seen[r] == 0 ? y : box.y_min;  // rows come in order
+      box.x_max = std::max(box.x_max, x);
+      box.y_max = y;
+      seen[r] = 1;
     }
   }
   return boxes;

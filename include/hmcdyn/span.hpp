@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <hmcdyn/detail/requirements.hpp>
+
 namespace hmcdyn {
 
 /// A view of contiguous elements that somebody else owns: the part of C++20's std::span that the

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/span.hpp>
 
 /// Which key points of a frame lie on moving things: one header a step, in the order in which a

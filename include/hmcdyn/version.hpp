@@ -3,6 +3,8 @@
 /// The library's version; the build reads it from here.
 #pragma once
 
+#include <hmcdyn/detail/requirements.hpp>
+
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): for the preprocessor of whoever includes this
 /// Breaking changes; while it is 0, so does the minor version.
 #define HMCDYN_VERSION_MAJOR 0

@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include <hmcdyn/detail/planar_points.hpp>
+#include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {

@@ -15,3 +15,7 @@ read -ra core < <(pkg-config --cflags --libs hmcdyn-core)
 read -ra full < <(pkg-config --cflags --libs hmcdyn-vision hmcdyn-optimization)
 "$compiler" -std=c++17 "$here/full/main.cpp" "${full[@]}" -o "$scratch/pkg_full"
 "$scratch/pkg_full"
+
+# As ORB-SLAM3 and most robotics code is built; the libraries were built without.
+"$compiler" -std=c++17 -O3 -march=native "$here/../../examples/03_own_types.cpp" "${full[@]}" -o "$scratch/pkg_native"
+"$scratch/pkg_native"

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 
 #include "evaluate/trajectory.hpp"
+#include "evaluate/truth_frame.hpp"
 #include "temporary_folder.hpp"
 #include "trajectories.hpp"
 
@@ -71,6 +72,26 @@ TEST_F(CommandLine, AteGivesJson) {
   }
   EXPECT_NEAR(result.at("std"), 0.0, 1e-9);
   EXPECT_EQ(result.at("pairs"), 4);
+}
+
+TEST_F(CommandLine, AGroundTruthOfBonnsMarkersIsMadeTheCameras) {
+  // Given a camera that rolls where it stands, and its markers
+  Trajectory camera;
+  for (int i = 0; i < 40; ++i) {
+    camera.push_back(
+        {0.1 * i, Eigen::Isometry3d(Eigen::Translation3d(0.01 * i, 0.0, 0.0) *
+                                    Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()))});
+  }
+  write("camera.txt", camera);
+  for (StampedPose& stamped : camera) {
+    stamped.pose = stamped.pose * bonnMarkersFromCamera().inverse();
+  }
+  write("markers.txt", camera);
+  // When, then
+  EXPECT_GT(runJson("ate -g markers.txt -e camera.txt").at("rmse"), 0.005);
+  EXPECT_LT(runJson("ate -g markers.txt -e camera.txt --groundtruth-of bonn-markers").at("rmse"),
+            1e-6);
+  EXPECT_EQ(run("ate -g markers.txt -e camera.txt --groundtruth-of tripod").exit_code, 2);
 }
 
 TEST_F(CommandLine, RpeGivesJsonOfTranslationAndRotation) {

@@ -29,18 +29,18 @@ struct ProcessResult {
   std::string text;  ///< Both streams.
 };
 
-/// Writes down its arguments, and a summary, unless the file `fail` names its filter.
+/// Writes down its arguments, and a summary, unless the file `fail` names its ablation.
 constexpr const char* kStandIn = R"(#!/usr/bin/env bash
 root=$(dirname "$0")/../../..
 echo "$*" >>"$root/calls"
 while (($# > 0)); do
   case "$1" in
     --output) output=$2 ;;
-    --filter) filter=$2 ;;
+    --ablation) ablation=$2 ;;
   esac
   shift
 done
-if [[ -f $root/fail && $(<"$root/fail") == "$filter" ]]; then
+if [[ -f $root/fail && $(<"$root/fail") == "${ablation-}" ]]; then
   echo '{"counts": {' >"$output/summary.json"
   exit 1
 fi
@@ -101,15 +101,15 @@ TEST_F(Reproduce, RunsEveryVariantAndSeedAndWritesTheTables) {
   const ProcessResult result = reproduce("--datasets data --runs 2 --jobs 2 --output out");
   ASSERT_EQ(result.exit_code, 0) << result.text;
   const std::string calls = takeCalls();
-  EXPECT_EQ(linesOf(calls), 2U * 8U * 2U);
+  EXPECT_EQ(linesOf(calls), 2U * 9U * 2U);
   EXPECT_THAT(calls, HasSubstr("rgbd_bonn_crowd --camera bonn --detector file --boxes"));
   EXPECT_THAT(calls, HasSubstr("walking_xyz --camera tum3"));
-  EXPECT_THAT(calls, HasSubstr("--filter box --seed 2"));
-  EXPECT_THAT(calls, HasSubstr("--filter hmc --no-soft-weights --seed 1"));
-  EXPECT_THAT(result.text, HasSubstr("[32/32]"));
+  EXPECT_THAT(calls, HasSubstr("--filter hmc --ablation rs --seed 2"));
+  EXPECT_THAT(calls, HasSubstr("--filter hmc --ablation opw --seed 1"));
+  EXPECT_THAT(result.text, HasSubstr("[36/36]"));
   EXPECT_THAT(result.text, HasSubstr("left"));
   const std::string page = read(path("out/tables/tables.md"));
-  EXPECT_THAT(page, HasSubstr("# Results of 32 runs"));
+  EXPECT_THAT(page, HasSubstr("# Results of 36 runs"));
   EXPECT_THAT(page, HasSubstr("| 0.0200 (0.0200-0.0200) | 0.0152 |"));
   EXPECT_THAT(page, Not(HasSubstr("not comparable")));
   EXPECT_TRUE(fs::exists(path("out/tables/table_6.csv")));
@@ -132,7 +132,7 @@ TEST_F(Reproduce, WhatIsDoneIsNotDoneAgain) {
 }
 
 TEST_F(Reproduce, AFailedRunIsNamedAndTriedAgain) {
-  write("fail", "box");
+  write("fail", "rs");
   const std::string call = "--datasets data --variants hmc,rs --runs 1 --output out";
   const ProcessResult failed = reproduce(call);
   EXPECT_EQ(failed.exit_code, 1);

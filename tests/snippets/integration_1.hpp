@@ -5,7 +5,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "integration/frame_filter.hpp"
+#include <hmcdyn/frame_filter.hpp>
 
 extern double timestamp;
 extern cv::Mat gray, depth;

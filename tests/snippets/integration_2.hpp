@@ -5,10 +5,12 @@
 
 #include <opencv2/core.hpp>
 
-#include "integration/compaction.hpp"
-#include "integration/frame_filter.hpp"
+#include <hmcdyn/compact.hpp>
+#include <hmcdyn/frame_filter.hpp>
 
 extern std::vector<cv::KeyPoint> key_points;
-extern std::vector<float> point_depth, right_u, weight;
+extern std::vector<float> point_depth, right_u;
 extern cv::Mat descriptors;
-extern const hmcdyn::integration::FrameFilterResult result;
+extern std::vector<hmcdyn::DetectionBox> boxes;
+extern hmcdyn::FrameFilter filter;
+extern hmcdyn::FrameInput input;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <opencv2/core.hpp>
+#include <vector>
 
-#include "integration/frame_filter.hpp"
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 
-extern cv::Mat labels;
-extern hmcdyn::integration::FrameFilter filter;
-extern hmcdyn::integration::FrameInput input;
+#include <hmcdyn/frame_filter.hpp>
+
+extern cv::Mat camera_matrix, distortion, gray, depth;
+extern cv::Size image_size;
+extern std::vector<cv::KeyPoint> undistorted_key_points;
+extern hmcdyn::FrameInput input;

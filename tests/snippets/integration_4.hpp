@@ -3,8 +3,8 @@
 
 #include <opencv2/core.hpp>
 
-#include <hmcdyn/dynamic_feature_filter.hpp>
-#include <hmcdyn/label_image.hpp>
+#include <hmcdyn/frame_filter.hpp>
 
-extern cv::Mat earlier_gray, current_gray, labels;
-extern hmcdyn::KeyPoints key_points;
+extern cv::Mat labels;
+extern hmcdyn::FrameFilter filter;
+extern hmcdyn::FrameInput input;

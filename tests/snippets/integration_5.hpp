@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdio>
+#include <opencv2/core.hpp>
 
-#include "integration/frame_filter.hpp"
+#include <hmcdyn/dynamic_feature_filter.hpp>
+#include <hmcdyn/label_image.hpp>
 
-extern const hmcdyn::integration::FrameFilterResult result;
+extern cv::Mat earlier_gray, current_gray, labels;
+extern hmcdyn::KeyPoints key_points;

@@ -13,8 +13,8 @@ namespace hmcdyn::test {
 constexpr double kTrackedNoise = 0.15;  ///< What tracked key points have (px).
 
 /// Every option set.
-inline MotionModelOptions fixedMotionModelOptions() {
-  MotionModelOptions options;
+inline TwoViewOptions fixedTwoViewOptions() {
+  TwoViewOptions options;
   options.min_matches = 12;
   options.min_background_matches = 60;
   options.min_background_cells = 5;

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "synthesize/body.hpp"
+#include "synthesize/paint.hpp"
+#include "synthesize/random.hpp"
 
 namespace hmcdyn::synthesize {
 namespace {
@@ -172,6 +174,29 @@ TEST(Body, BonesKeepTheirLengthInEveryPosture) {
     EXPECT_NEAR((poses[8].translation() - poses[7].translation()).norm(), 0.245 * kHeight, 1e-6);
     EXPECT_NEAR((poses[9].translation() - poses[8].translation()).norm(), 0.246 * kHeight, 1e-6);
   }
+}
+
+TEST(Performance, SaysWhenAnActionBegins) {
+  Behaviour b;
+  b.actions = {standFor(1.0, 0.0), walkTo(2.0, 0.0), standFor(100.0, 0.0), standFor(1.0, 0.0)};
+  const Performance performance(b, 10.0);
+  // Given by samples of 1/120 s, after the quarter of a second that is kept before the first frame
+  EXPECT_NEAR(performance.startOf(1), 0.75, 0.02);
+  const double arrival = performance.startOf(2);
+  EXPECT_NEAR(performance.at(arrival).x, 2.0, 0.1);
+  EXPECT_GT(arrival, 0.75 + 2.0);
+  EXPECT_TRUE(std::isinf(performance.startOf(3)));
+  EXPECT_THROW(performance.startOf(4), std::out_of_range);
+}
+
+TEST(Paint, APointIsDrawnFromBelow) {
+  // Given the same stream twice
+  Random one(7);
+  Random other(7);
+  const cv::Point point = paint::randomPoint(one, {0, 99}, {0, 99});
+  // Then y is the first number of the stream, whatever the compiler
+  EXPECT_EQ(point.y, other.integer(0, 99));
+  EXPECT_EQ(point.x, other.integer(0, 99));
 }
 
 }  // namespace

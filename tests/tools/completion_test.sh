@@ -31,7 +31,7 @@ expect "hmcdyn_slam --filter " hmc box chi2 none !--output
 expect "hmcdyn_slam --filter h" hmc !box
 expect "hmcdyn_slam --detector y" yolo !darknet
 expect "hmcdyn_synthesize -" -s --scene --noise
-expect "hmcdyn_synthesize --noise " kinect none
+expect "hmcdyn_synthesize --noise " kinect kinect_systematic none
 expect "hmcdyn_evaluate " ate rpe summary
 expect "hmcdyn_evaluate s" summary !ate
 expect "hmcdyn_evaluate rpe --del" --delta --delta-unit
@@ -40,6 +40,7 @@ expect "hmcdyn_evaluate rpe --delta-unit " frames deg !ate
 expect "hmcdyn_label_score --m" --margin
 expect "hmcdyn_map_score --rad" --radius
 expect "hmcdyn_tables --ren" --rendered
+expect "hmcdyn_calibrate_depth --sensor " structured_light active_stereo
 
 # File names are bash's own: nothing is offered here.
 expect "hmcdyn_slam --output "

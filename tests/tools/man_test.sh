@@ -6,7 +6,8 @@ pages=$1
 bin=$2
 failed=0
 for call in hmcdyn_slam hmcdyn_evaluate "hmcdyn_evaluate ate" "hmcdyn_evaluate rpe" \
-  "hmcdyn_evaluate summary" hmcdyn_synthesize hmcdyn_label_score hmcdyn_map_score hmcdyn_tables; do
+  "hmcdyn_evaluate summary" hmcdyn_synthesize hmcdyn_label_score hmcdyn_mask hmcdyn_mask_score \
+  hmcdyn_map_score hmcdyn_tables hmcdyn_calibrate_depth; do
   page=$pages/${call// /-}.1
   text=$(<"$page")
   for section in NAME SYNOPSIS DESCRIPTION OPTIONS; do

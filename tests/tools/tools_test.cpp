@@ -44,18 +44,29 @@ struct Misspelled {
   const char* meant;
 };
 
-const std::vector<std::string> kHelps = {
-    "hmcdyn_slam",         "hmcdyn_evaluate",         "hmcdyn_evaluate ate",
-    "hmcdyn_evaluate rpe", "hmcdyn_evaluate summary", "hmcdyn_synthesize",
-    "hmcdyn_label_score",  "hmcdyn_map_score",        "hmcdyn_tables"};
+const std::vector<std::string> kHelps = {"hmcdyn_slam",
+                                         "hmcdyn_evaluate",
+                                         "hmcdyn_evaluate ate",
+                                         "hmcdyn_evaluate rpe",
+                                         "hmcdyn_evaluate summary",
+                                         "hmcdyn_synthesize",
+                                         "hmcdyn_label_score",
+                                         "hmcdyn_map_score",
+                                         "hmcdyn_tables",
+                                         "hmcdyn_calibrate_depth",
+                                         "hmcdyn_mask",
+                                         "hmcdyn_mask_score"};
 
 TEST(Tools, SuggestTheNearestOption) {
   const Misspelled cases[] = {{"hmcdyn_slam --filtr hmc", "--filtr", "--filter"},
                               {"hmcdyn_evaluate ate --estimat x", "--estimat", "--estimate"},
                               {"hmcdyn_synthesize --scnee crowd", "--scnee", "--scene"},
                               {"hmcdyn_label_score a:b --margni 2", "--margni", "--margin"},
+                              {"hmcdyn_mask --datset d", "--datset", "--dataset"},
+                              {"hmcdyn_mask_score a:b --egde 2", "--egde", "--edge"},
                               {"hmcdyn_map_score a b --radus 1", "--radus", "--radius"},
-                              {"hmcdyn_tables --rendred", "--rendred", "--rendered"}};
+                              {"hmcdyn_tables --rendred", "--rendred", "--rendered"},
+                              {"hmcdyn_calibrate_depth --polt x", "--polt", "--plot"}};
   for (const Misspelled& one : cases) {
     const Outcome outcome = run(one.call);
     EXPECT_EQ(outcome.exit_code, 2) << one.call;

@@ -85,6 +85,10 @@ CameraCalibration loadCamera(const std::string& preset_or_file) {
   if (std::filesystem::exists(preset_or_file)) {
     return readCalibrationFile(preset_or_file);
   }
+  const std::filesystem::path path(preset_or_file);
+  if (path.has_extension() || path.has_parent_path()) {
+    throw std::runtime_error(fmt::format("camera {}: no such file", preset_or_file));
+  }
   const std::vector<std::string> names = cameraPresetNames();
   const auto nearest = std::min_element(
       names.begin(), names.end(), [&](const std::string& left, const std::string& right) {

@@ -2,170 +2,123 @@
 #include "slam/camera/calibration_file.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
+#include <iterator>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
-#include "slam/dataset/file_io.hpp"
+#include "slam/camera/depth_error_file.hpp"
+#include "slam/camera/plausibility.hpp"
+#include "slam/camera/settings_file.hpp"
+#include "support/text_table.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
 constexpr std::array<const char*, 5> kDistortionKeys{"k1", "k2", "p1", "p2", "k3"};
+constexpr std::array<const char*, 3> kRationalKeys{"k4", "k5", "k6"};
 
-// Checked access to the keys of one file.
-class Settings {
- public:
-  explicit Settings(std::filesystem::path file) : file_(std::move(file)) {
-    std::string text = readFile(file_);
-    // OpenCV heads its files with "%YAML:1.0", which is no YAML directive; blanked, so that the
-    // line numbers stay.
-    if (text.rfind("%YAML:", 0) == 0) {
-      std::fill(text.begin(), std::find(text.begin(), text.end(), '\n'), ' ');
-    }
-    try {
-      root_ = YAML::Load(text);
-    } catch (const YAML::Exception& error) {
-      throw failure(error.mark, "is not YAML: " + error.msg);
-    }
-    if (!root_.IsMap()) {
-      throw failure(YAML::Mark::null_mark(), "expected lines \"key: value\"");
+// What others call the depth factor, as the last part of a key in lower case.
+const std::vector<std::string>& foreignDepthFactors() {
+  static const std::vector<std::string> names{
+      "depthmapfactor",  "depthmap_factor", "depth_map_factor", "depthfactor",
+      "png_depth_scale", "depth_scale",     "depthscale",       "depth_scaling_factor"};
+  return names;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string lastPart(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+// The first key with this last part, whatever it is nested in; empty where there is none.
+std::string keyEndingIn(const SettingsFile& settings, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    for (const Setting& setting : settings.settings()) {
+      if (lower(lastPart(setting.key)) == part) {
+        return setting.key;
+      }
     }
   }
+  return {};
+}
 
-  std::vector<std::string> keys() const {
-    std::vector<std::string> keys;
-    for (const auto& entry : root_) {
-      keys.push_back(entry.first.Scalar());
+void refuseRationalModel(const SettingsFile& settings, const std::string& prefix) {
+  for (const char* name : kRationalKeys) {
+    const std::string key = prefix + name;
+    if (settings.has(key) && settings.number(key) != 0.0) {
+      throw settings.failure(
+          key, fmt::format("is {}; expected 0: distortion is k1, k2, p1, p2 and k3 here; rectify "
+                           "the images, or calibrate without the rational model",
+                           settings.number(key)));
     }
-    return keys;
   }
-
-  bool has(const std::string& key) const { return node(key).IsDefined(); }
-
-  double number(const std::string& key) const { return toNumber(required(key), key); }
-
-  double positive(const std::string& key) const {
-    const double value = number(key);
-    if (!(value > 0.0)) {
-      throw failure(node(key).Mark(),
-                    fmt::format("{} is {}; expected a number above 0", key, value));
-    }
-    return value;
-  }
-
-  int positiveInteger(const std::string& key) const {
-    const double value = positive(key);
-    if (value != std::floor(value) || value > std::numeric_limits<int>::max()) {
-      throw failure(node(key).Mark(),
-                    fmt::format("{} is {}; expected a whole number above 0", key, value));
-    }
-    return static_cast<int>(value);
-  }
-
-  std::string text(const std::string& key) const { return required(key).Scalar(); }
-
-  std::vector<double> numbers(const std::string& key) const {
-    const YAML::Node list = required(key);
-    if (!list.IsSequence()) {
-      throw failure(list.Mark(), fmt::format("{}: expected a list of numbers", key));
-    }
-    std::vector<double> values;
-    for (const YAML::Node& element : list) {
-      values.push_back(toNumber(element, key));
-    }
-    return values;
-  }
-
-  // "FILE:LINE: key message", without the line where the key is missing.
-  std::runtime_error failure(const std::string& key, const std::string& message) const {
-    return failure(has(key) ? node(key).Mark() : YAML::Mark::null_mark(), key + " " + message);
-  }
-
- private:
-  YAML::Node node(const std::string& key) const { return root_[key]; }
-
-  YAML::Node required(const std::string& key) const {
-    if (!has(key)) {
-      throw failure(key, "is missing");
-    }
-    return node(key);
-  }
-
-  double toNumber(const YAML::Node& value, const std::string& key) const {
-    double number = 0.0;
-    if (!value.IsScalar() || !YAML::convert<double>::decode(value, number) ||
-        !std::isfinite(number)) {
-      throw failure(value.Mark(), value.IsScalar() ? fmt::format("{} is '{}'; expected a number",
-                                                                 key, value.Scalar())
-                                                   : fmt::format("{}: expected a number", key));
-    }
-    return number;
-  }
-
-  std::runtime_error failure(const YAML::Mark& mark, const std::string& message) const {
-    if (mark.is_null()) {
-      return std::runtime_error(fmt::format("{}: {}", file_.string(), message));
-    }
-    return errorAt(file_, static_cast<std::size_t>(mark.line) + 1, message);
-  }
-
-  std::filesystem::path file_;
-  YAML::Node root_;
-};
+}
 
 // Focal lengths, principal point and the single coefficients, each key with the prefix in front.
-void readIntrinsics(const Settings& settings, const std::string& prefix,
+void readIntrinsics(const SettingsFile& settings, const std::string& prefix,
                     CameraCalibration& calibration) {
   calibration.pinhole.fx = settings.positive(prefix + "fx");
   calibration.pinhole.fy = settings.positive(prefix + "fy");
   calibration.pinhole.cx = settings.number(prefix + "cx");
   calibration.pinhole.cy = settings.number(prefix + "cy");
   for (std::size_t i = 0; i < kDistortionKeys.size(); ++i) {
-    const std::string key = prefix + kDistortionKeys[i];
-    calibration.distortion[i] = settings.has(key) ? settings.number(key) : 0.0;
+    const std::string key = prefix + kDistortionKeys.at(i);
+    calibration.distortion.at(i) = settings.has(key) ? settings.number(key) : 0.0;
   }
 }
 
-void readDistortionList(const Settings& settings, CameraCalibration& calibration) {
-  const std::vector<double> list = settings.numbers("distortion");
-  if (list.size() != 4 && list.size() != 5) {
-    throw settings.failure("distortion", fmt::format("has {} numbers; expected k1, k2, p1, p2 and "
-                                                     "perhaps k3",
-                                                     list.size()));
+void readDistortionList(const SettingsFile& settings, const std::string& key,
+                        CameraCalibration& calibration) {
+  std::vector<double> list = settings.numbers(key);
+  const std::size_t used = static_cast<std::size_t>(
+      std::find_if(list.rbegin(), list.rend(), [](double value) { return value != 0.0; }).base() -
+      list.begin());
+  if (list.size() > kDistortionKeys.size() && used <= kDistortionKeys.size()) {
+    list.resize(kDistortionKeys.size());  // a model with more coefficients, which are 0
   }
-  for (const char* key : kDistortionKeys) {
-    if (settings.has(key)) {
-      throw settings.failure(key, "is given twice: alone and in the list \"distortion\"");
-    }
+  if (list.size() != 4 && list.size() != 5) {
+    throw settings.failure(key, fmt::format("has {} numbers; expected k1, k2, p1, p2 and "
+                                            "perhaps k3",
+                                            list.size()));
   }
   std::copy(list.begin(), list.end(), calibration.distortion.begin());
 }
 
 // A misspelt optional key would be taken for a default.
-void refuseUnknownKeys(const Settings& settings) {
+void refuseUnknownKeys(const SettingsFile& settings) {
   const std::vector<std::string> known{
-      "fx", "fy", "cx", "cy", "width",        "height",     "distortion", "k1",
-      "k2", "p1", "p2", "k3", "depth_factor", "frame_rate", "baseline_fx"};
-  for (const std::string& key : settings.keys()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw settings.failure(key,
+      "fx",           "fy",         "cx",          "cy",     "width",       "height",
+      "distortion",   "k1",         "k2",          "p1",     "p2",          "k3",
+      "depth_factor", "frame_rate", "baseline_fx", "sensor", "depth_error", "depth_correction"};
+  for (const Setting& setting : settings.settings()) {
+    const std::string outermost = setting.key.substr(0, setting.key.find('.'));
+    const bool may_nest = outermost == "depth_error" || outermost == "depth_correction";
+    if (std::find(known.begin(), known.end(), may_nest ? outermost : setting.key) == known.end()) {
+      throw settings.failure(setting.key,
                              fmt::format("is no key; expected one of {}", fmt::join(known, ", ")));
     }
   }
 }
 
-CameraCalibration readOwn(const Settings& settings) {
+CameraCalibration readOwn(const SettingsFile& settings) {
   CameraCalibration calibration;
   readIntrinsics(settings, "", calibration);
   if (settings.has("distortion")) {
-    readDistortionList(settings, calibration);
+    readDistortionList(settings, "distortion", calibration);
+    for (const char* key : kDistortionKeys) {
+      if (settings.has(key)) {
+        throw settings.failure(key, "is given twice: alone and in the list \"distortion\"");
+      }
+    }
   }
   calibration.depth_factor = settings.positive("depth_factor");
   calibration.width = settings.positiveInteger("width");
@@ -180,37 +133,187 @@ CameraCalibration readOwn(const Settings& settings) {
   return calibration;
 }
 
-CameraCalibration readOrbSlam3(const Settings& settings) {
-  const std::string type = settings.has("Camera.type") ? settings.text("Camera.type") : "PinHole";
-  if (type != "PinHole" && type != "Rectified") {
-    throw settings.failure("Camera.type",
-                           fmt::format("is '{}'; expected PinHole or Rectified", type));
+// Whose the camera is among several: the first. Nothing where no key is a focal length.
+std::optional<std::string> prefixOf(const SettingsFile& settings) {
+  for (const char* prefix : {"Camera1.", "Camera."}) {
+    for (const char* name : {"fx", "fy", "cx", "cy"}) {
+      if (settings.has(std::string(prefix) + name)) {
+        return prefix;
+      }
+    }
   }
+  const std::string key = keyEndingIn(settings, {"fx"});
+  return key.empty() ? std::nullopt
+                     : std::optional(key.substr(0, key.size() - lastPart(key).size()));
+}
+
+// A pinhole with k1, k2, p1, p2 and k3, by any of its names.
+bool isOurModel(const std::string& name) {
+  std::string letters;
+  std::copy_if(name.begin(), name.end(), std::back_inserter(letters),
+               [](unsigned char c) { return std::isalnum(c) != 0; });
+  const std::vector<std::string> known{
+      "pinhole",         "rectified",    "perspective",         "radtan",
+      "plumbbob",        "brown",        "brownconrady",        "opencv",
+      "pinholeradtan",   "pinholebrown", "pinholebrownconrady", "none",
+      "radialtangential"};
+  return std::find(known.begin(), known.end(), lower(letters)) != known.end();
+}
+
+// "Camera.type", "Camera.model", "model_type", "camera_model".
+void requirePinhole(const SettingsFile& settings) {
+  const std::string key = settings.firstOf({"Camera.type", "Camera.model", "model_type",
+                                            "camera_model", "cam0.camera_model", "Camera0.model"});
+  if (key.empty()) {
+    return;
+  }
+  const std::string distortion = keyEndingIn(settings, {"distortion_model"});
+  for (const std::string& model : {key, distortion}) {
+    if (!model.empty() && !isOurModel(settings.text(model))) {
+      throw settings.failure(
+          model, fmt::format("is '{}'; expected PinHole or Rectified, with k1, k2, p1, p2 and k3 "
+                             "(radtan, plumb_bob): rectify the images for others",
+                             support::printable(settings.text(model))));
+    }
+  }
+}
+
+// A camera matrix by rows, as OpenCV and ROS write it, or fx, fy, cx, cy in a list, as Kalibr does.
+bool readMatrix(const SettingsFile& settings, CameraCalibration& calibration) {
+  const std::string matrix = settings.firstOf(
+      {"camera_matrix.data", "cameraMatrix.data", "Camera_Matrix.data", "K.data", "K", "Camera.K"});
+  const std::string list = settings.firstOf({"cam0.intrinsics", "intrinsics", "Camera.intrinsics"});
+  const std::string& key = matrix.empty() ? list : matrix;
+  if (key.empty()) {
+    return false;
+  }
+  const std::vector<double> values = settings.numbers(key);
+  const bool square = values.size() == 9;
+  if (!square && values.size() != 4) {
+    throw settings.failure(
+        key, fmt::format("has {} numbers; expected the 9 of a camera matrix, or fx, fy, cx, cy",
+                         values.size()));
+  }
+  calibration.pinhole = square ? PinholeCamera{values[0], values[4], values[2], values[5]}
+                               : PinholeCamera{values[0], values[1], values[2], values[3]};
+  if (!(calibration.pinhole.fx > 0.0 && calibration.pinhole.fy > 0.0)) {
+    throw settings.failure(key, "has a focal length that is not above 0");
+  }
+  const std::string distortion =
+      settings.firstOf({"distortion_coefficients.data", "Distortion_Coefficients.data",
+                        "cam0.distortion_coeffs", "distortion_coeffs", "distCoeffs.data"});
+  if (!distortion.empty()) {
+    readDistortionList(settings, distortion, calibration);
+  }
+  return true;
+}
+
+// 0 where no key says it: the images do. Matrices have rows and columns, too, so not every key will
+// do.
+void readSize(const SettingsFile& settings, const std::string& prefix,
+              CameraCalibration& calibration) {
+  const auto side = [&](const char* name, const char* lines, const char* letter) {
+    const std::string key =
+        settings.firstOf({prefix + name, std::string("Camera.") + name,
+                          std::string("image_") + name, prefix + "image_" + name, prefix + lines,
+                          std::string("Camera.") + lines, prefix + letter, name});
+    return key.empty() ? 0 : settings.positiveInteger(key);
+  };
+  calibration.width = side("width", "cols", "W");
+  calibration.height = side("height", "rows", "H");
+  const std::string resolution = settings.firstOf({"cam0.resolution", "resolution"});
+  if (calibration.width == 0 && !resolution.empty()) {
+    const std::vector<double> sides = settings.numbers(resolution);
+    if (sides.size() == 2 && sides[0] >= 1.0 && sides[1] >= 1.0 && sides[0] < 1e5 &&
+        sides[1] < 1e5) {
+      calibration.width = static_cast<int>(sides[0]);
+      calibration.height = static_cast<int>(sides[1]);
+    }
+  }
+  if (calibration.width == 0 || calibration.height == 0) {
+    calibration.width = 0;
+    calibration.height = 0;
+  }
+}
+
+double readDepthFactor(const SettingsFile& settings) {
+  std::string key = settings.firstOf({"RGBD.DepthMapFactor", "DepthMapFactor"});
+  if (key.empty()) {
+    key = keyEndingIn(settings, foreignDepthFactors());
+  }
+  if (key.empty()) {
+    key = keyEndingIn(settings, {"depth_factor"});
+  }
+  if (key.empty()) {
+    throw settings.failure(
+        "DepthMapFactor is missing: this is the file of a camera without depth, such as KITTI's? "
+        "Add \"DepthMapFactor: 5000\", the value of one metre in the depth images (TUM 5000, "
+        "millimetres 1000)");
+  }
+  return settings.positive(key);
+}
+
+// Of other systems. What we do not need is not looked at.
+CameraCalibration readForeign(const SettingsFile& settings) {
+  requirePinhole(settings);
   CameraCalibration calibration;
-  readIntrinsics(settings, settings.has("Camera1.fx") ? "Camera1." : "Camera.", calibration);
-  calibration.depth_factor = settings.positive(
-      settings.has("RGBD.DepthMapFactor") ? "RGBD.DepthMapFactor" : "DepthMapFactor");
-  calibration.width = settings.positiveInteger("Camera.width");
-  calibration.height = settings.positiveInteger("Camera.height");
-  if (settings.has("Camera.fps")) {
-    calibration.frame_rate = settings.positive("Camera.fps");
+  const std::optional<std::string> prefix = prefixOf(settings);
+  if (prefix) {
+    readIntrinsics(settings, *prefix, calibration);
+    refuseRationalModel(settings, *prefix);
+  } else if (!readMatrix(settings, calibration)) {
+    std::vector<std::string> some;
+    for (const Setting& setting : settings.settings()) {
+      some.push_back(setting.key);
+      constexpr std::size_t kNamed = 5;
+      if (some.size() == kNamed) {
+        break;
+      }
+    }
+    throw settings.failure(fmt::format(
+        "has no focal length (fx, Camera.fx, Camera1.fx, a camera_matrix); its keys are {}, ...: "
+        "is it the settings file of a camera?",
+        fmt::join(some, ", ")));
   }
-  if (settings.has("Stereo.b")) {
-    calibration.baseline_fx = settings.positive("Stereo.b") * calibration.pinhole.fx;
-  } else if (settings.has("Camera.bf")) {
-    calibration.baseline_fx = settings.positive("Camera.bf");
+  calibration.depth_factor = readDepthFactor(settings);
+  readSize(settings, prefix.value_or(""), calibration);
+  const std::string rate = keyEndingIn(settings, {"fps", "frame_rate"});
+  if (!rate.empty()) {
+    calibration.frame_rate = settings.positive(rate);
+  }
+  // A file may hold any baseline, as nothing here depends on it.
+  const std::string metres = settings.firstOf({"Stereo.b"});
+  const std::string product = settings.firstOf({"Camera.bf", "Camera.focal_x_baseline"});
+  const std::string& key = metres.empty() ? product : metres;
+  if (!key.empty()) {
+    const double value = settings.number(key) * (metres.empty() ? 1.0 : calibration.pinhole.fx);
+    if (isBaseline(value, calibration.pinhole.fx)) {
+      calibration.baseline_fx = value;
+    }
   }
   return calibration;
+}
+
+// Others write fx and fy without a prefix, too, but call the depth factor otherwise.
+bool isOwn(const SettingsFile& settings) {
+  const bool plain = !settings.firstOf({"fx", "fy", "cx", "cy"}).empty();
+  return plain &&
+         (settings.has("depth_factor") || keyEndingIn(settings, foreignDepthFactors()).empty());
 }
 
 }  // namespace
 
 CameraCalibration readCalibrationFile(const std::filesystem::path& file) {
-  const Settings settings(file);
-  const std::vector<std::string> keys = settings.keys();
-  const bool orb_slam3 = std::any_of(
-      keys.begin(), keys.end(), [](const std::string& key) { return key.rfind("Camera", 0) == 0; });
-  return orb_slam3 ? readOrbSlam3(settings) : readOwn(settings);
+  const SettingsFile settings(file);
+  CameraCalibration calibration = isOwn(settings) ? readOwn(settings) : readForeign(settings);
+  const std::string wrong = whatIsImplausible(calibration);
+  if (!wrong.empty()) {
+    throw settings.failure(wrong);
+  }
+  const DepthSettings depth = readDepthSettings(settings);
+  calibration.depth_error = depth.error;
+  calibration.depth_correction = depth.correction;
+  return calibration;
 }
 
 }  // namespace hmcdyn::slam

@@ -7,7 +7,7 @@
 
 namespace hmcdyn::slam {
 
-/// Reads a calibration from YAML in one of two spellings. Ours knows these keys, and no other:
+/// Reads a calibration from YAML. Ours knows these keys, and no other:
 ///
 ///   fx, fy         focal lengths (px), above 0                              required
 ///   cx, cy         principal point (px)                                     required
@@ -18,11 +18,16 @@ namespace hmcdyn::slam {
 ///   frame_rate     frames a second, above 0                                 default 30
 ///   baseline_fx    stereo baseline times fx (m px), above 0                 default unknown
 ///
-/// A settings file of ORB-SLAM3, which is taken for one where a key starts with "Camera", has the
-/// same under Camera.fx or Camera1.fx (and so on to k3), Camera.width, Camera.height, Camera.fps,
-/// DepthMapFactor or RGBD.DepthMapFactor, and Camera.bf or Stereo.b; its other keys are not read.
+/// A settings file of another system is read for what we need of it, its other keys do not matter:
+/// ORB-SLAM2 and 3 and their forks (Camera.fx or Camera1.fx and so on to k3, Camera.width,
+/// Camera.height, Camera.fps, DepthMapFactor or RGBD.DepthMapFactor, Camera.bf or Stereo.b),
+/// stella_vslam (the same nested, cols, rows, depthmap_factor), and others that have an fx
+/// somewhere, a camera_matrix as OpenCV and ROS write it, or Kalibr's intrinsics. Without a size,
+/// width and height are 0: the images say it (fittedTo()).
+/// Either kind may have the keys of readDepthSettings(): sensor, depth_error, depth_correction.
 /// @throws std::runtime_error that names file, key and, where there is one, line: file missing,
-/// not YAML, a key missing, of the wrong type or out of range, a camera model without pinhole.
+/// a key that we need missing, given twice, no YAML, of the wrong type or out of range, a camera
+/// model without pinhole, a distortion with k4 to k6; or whatIsImplausible().
 CameraCalibration readCalibrationFile(const std::filesystem::path& file);
 
 }  // namespace hmcdyn::slam

@@ -80,32 +80,54 @@ cv::Mat Rectifier::validMask() const {
   return depth(cv::Mat(calibration_.height, calibration_.width, CV_8UC1, cv::Scalar(255)));
 }
 
-DetectionBox Rectifier::box(const DetectionBox& raw) const {
-  const double x_min = std::max<double>(raw.x_min, 0.0);
-  const double y_min = std::max<double>(raw.y_min, 0.0);
-  const double x_max = std::min<double>(raw.x_max, calibration_.width - 1.0);
-  const double y_max = std::min<double>(raw.y_max, calibration_.height - 1.0);
-  if (isIdentity() || !(raw.x_min <= raw.x_max) || !(raw.y_min <= raw.y_max) || x_min > x_max ||
+template <class Map>
+DetectionBox Rectifier::mapped(const DetectionBox& from, const Map& map) const {
+  const double x_min = std::max<double>(from.x_min, 0.0);
+  const double y_min = std::max<double>(from.y_min, 0.0);
+  const double x_max = std::min<double>(from.x_max, calibration_.width - 1.0);
+  const double y_max = std::min<double>(from.y_max, calibration_.height - 1.0);
+  if (isIdentity() || !(from.x_min <= from.x_max) || !(from.y_min <= from.y_max) || x_min > x_max ||
       y_min > y_max) {
-    return raw;
+    return from;
   }
-  const cv::Matx33d camera = cameraMatrix(calibration_.pinhole);
-  const cv::Mat distortion(calibration_.distortion, true);
-  const std::vector<cv::Point2d> border = borderPoints(x_min, y_min, x_max, y_max);
-  std::vector<cv::Point2d> mapped;
-  const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-4);
-  cv::undistortPoints(border, mapped, camera, distortion, cv::noArray(), camera, until);
-
+  const std::vector<cv::Point2d> border = map(borderPoints(x_min, y_min, x_max, y_max));
   const auto [left, right] = std::minmax_element(
-      mapped.begin(), mapped.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+      border.begin(), border.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   const auto [top, bottom] = std::minmax_element(
-      mapped.begin(), mapped.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
-  DetectionBox box = raw;
+      border.begin(), border.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+  DetectionBox box = from;
   box.x_min = static_cast<float>(left->x);
   box.y_min = static_cast<float>(top->y);
   box.x_max = static_cast<float>(right->x);
   box.y_max = static_cast<float>(bottom->y);
   return box;
+}
+
+DetectionBox Rectifier::box(const DetectionBox& raw) const {
+  return mapped(raw, [this](const std::vector<cv::Point2d>& border) {
+    const cv::Matx33d camera = cameraMatrix(calibration_.pinhole);
+    const cv::Mat distortion(calibration_.distortion, true);
+    std::vector<cv::Point2d> rectified;
+    const cv::TermCriteria until(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-4);
+    cv::undistortPoints(border, rectified, camera, distortion, cv::noArray(), camera, until);
+    return rectified;
+  });
+}
+
+DetectionBox Rectifier::rawBox(const DetectionBox& rectified) const {
+  return mapped(rectified, [this](const std::vector<cv::Point2d>& border) {
+    const PinholeCamera& pinhole = calibration_.pinhole;
+    std::vector<cv::Point3d> rays;
+    rays.reserve(border.size());
+    for (const cv::Point2d& pixel : border) {
+      rays.emplace_back((pixel.x - pinhole.cx) / pinhole.fx, (pixel.y - pinhole.cy) / pinhole.fy,
+                        1.0);
+    }
+    std::vector<cv::Point2d> raw;
+    cv::projectPoints(rays, cv::Vec3d(), cv::Vec3d(), cameraMatrix(pinhole),
+                      cv::Mat(calibration_.distortion, true), raw);
+    return raw;
+  });
 }
 
 }  // namespace hmcdyn::slam

@@ -19,6 +19,8 @@ class Rectifier {
   /// True where there is no distortion to take out.
   bool isIdentity() const noexcept { return map_whole_.empty(); }
 
+  const CameraCalibration& calibration() const noexcept { return calibration_; }
+
   /// Of the camera's images (px).
   cv::Size size() const noexcept { return {calibration_.width, calibration_.height}; }
 
@@ -40,7 +42,12 @@ class Rectifier {
   /// or NaN comes back as it is.
   DetectionBox box(const DetectionBox& raw) const;
 
+  /// The other way: smallest box in the raw image around a box in the rectified image (px).
+  DetectionBox rawBox(const DetectionBox& rectified) const;
+
  private:
+  template <class Map>
+  DetectionBox mapped(const DetectionBox& from, const Map& map) const;
   void checkSize(const cv::Mat& image) const;
 
   CameraCalibration calibration_;

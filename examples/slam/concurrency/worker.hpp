@@ -102,13 +102,13 @@ class Worker {
     return replaced;
   }
 
-  /// The next result, if it is there already. Rethrows what its job threw; the next call goes on
-  /// with the next job's.
+  /// The next result, if it is there already and nobody waits for it in take(). Rethrows what its
+  /// job threw; the next call goes on with the next job's.
   std::optional<Result> tryTake() {
     std::optional<Outcome> outcome;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (outcomes_.empty()) {
+      if (outcomes_.size() <= takers_) {
         return std::nullopt;
       }
       outcome.emplace(popOutcome());
@@ -117,15 +117,22 @@ class Worker {
   }
 
   /// The next result; waits for it. Rethrows what its job threw, as tryTake() does.
-  /// @throws std::logic_error where no job is pending, which would be waited for without end.
+  /// @throws std::logic_error where no job is pending but those whose results others wait for
+  /// already: it would be waited for without end.
   Result take() {
     std::optional<Outcome> outcome;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      if (pending_ == 0) {
-        throw std::logic_error("Worker::take: no job is pending; submit one first");
+      if (pending_ <= takers_) {
+        throw std::logic_error(
+            "Worker::take: no job is pending" +
+            (takers_ == 0 ? std::string()
+                          : " but the " + std::to_string(takers_) + " that others wait for") +
+            "; submit one first");
       }
+      ++takers_;
       result_came_.wait(lock, [this] { return !outcomes_.empty(); });
+      --takers_;
       outcome.emplace(popOutcome());
     }
     return unwrap(std::move(*outcome));
@@ -200,6 +207,7 @@ class Worker {
   std::deque<Job> queue_;
   std::deque<Outcome> outcomes_;
   std::size_t pending_ = 0;
+  std::size_t takers_ = 0;  ///< Threads that wait in take(), each for a result of its own.
   bool stopping_ = false;
 
   std::thread thread_;

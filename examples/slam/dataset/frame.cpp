@@ -66,6 +66,10 @@ cv::Mat toGray(const cv::Mat& bgr) {
   return gray;
 }
 
+cv::Mat withoutKnownError(const cv::Mat& depth, const DepthCorrection& correction) {
+  return isIdentity(correction) ? depth : correctDepth(depth, correction);
+}
+
 }  // namespace
 
 RgbdFrame loadFrame(const FrameEntry& entry, const CameraCalibration& calibration) {
@@ -79,15 +83,18 @@ RgbdFrame loadFrame(const FrameEntry& entry, const CameraCalibration& calibratio
 }
 
 RgbdFrame rectify(const RgbdFrame& frame, const Rectifier& rectifier) {
-  if (rectifier.isIdentity()) {
-    return frame;
-  }
+  const DepthCorrection& correction = rectifier.calibration().depth_correction;
   RgbdFrame rectified;
+  if (rectifier.isIdentity()) {
+    rectified = frame;
+    rectified.depth = withoutKnownError(frame.depth, correction);
+    return rectified;
+  }
   rectified.index = frame.index;
   rectified.timestamp = frame.timestamp;
   rectified.bgr = rectifier.color(frame.bgr);
   rectified.gray = toGray(rectified.bgr);
-  rectified.depth = rectifier.depth(frame.depth);
+  rectified.depth = withoutKnownError(rectifier.depth(frame.depth), correction);
   return rectified;
 }
 

@@ -27,8 +27,9 @@ struct RgbdFrame {
 /// another type, or of another size than the calibration's. Other frames can still be loaded.
 RgbdFrame loadFrame(const FrameEntry& entry, const CameraCalibration& calibration);
 
-/// The frame as a pinhole camera would have seen it; without distortion it shares its images with
-/// the argument.
+/// The frame as a pinhole camera would have seen it, its depth without what the calibration's
+/// depth_correction knows; without distortion and correction it shares its images with the
+/// argument.
 /// @throws std::invalid_argument where the frame's size is not the calibration's.
 RgbdFrame rectify(const RgbdFrame& frame, const Rectifier& rectifier);
 

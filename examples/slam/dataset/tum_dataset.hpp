@@ -3,8 +3,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "support/time_stamps.hpp"
 
 namespace hmcdyn::slam {
 
@@ -23,6 +26,18 @@ struct DatasetOptions {
   std::filesystem::path associations;
   /// Largest difference of paired time stamps (s), for rgb.txt with depth.txt. At least 0.
   double time_tolerance = 0.02;
+  /// What the lists' time stamps count; none = found out by reviewStamps().
+  std::optional<support::TimeUnit> time_unit;
+  double frame_rate = 30.0;  ///< Frames a second, where the time stamps are frame numbers.
+};
+
+/// The frames of a folder, and what became of its lists.
+struct FrameList {
+  std::vector<FrameEntry> frames;
+  std::size_t color_without_depth = 0;  ///< Colour images without a depth image in time.
+  std::size_t depth_without_color = 0;  ///< Depth images without a colour image in time.
+  double unit_seconds = 1.0;            ///< Of the time stamps in the colour images' list.
+  std::vector<std::string> notes;       ///< What was assumed or left out, a sentence each.
 };
 
 /// The frames of a folder in the format of the TUM RGB-D benchmark (BONN's is the same), in the
@@ -31,8 +46,11 @@ struct DatasetOptions {
 /// lists often go beyond the images at hand: loadFrame() reports it.
 /// @throws std::invalid_argument where the tolerance is negative or NaN.
 /// @throws std::runtime_error that names folder, file and line where the folder or a list is
-/// missing, empty or malformed, a time stamp names two files, no two time stamps are within the
-/// tolerance, or not one frame has both its files.
+/// missing, empty or malformed, a time stamp names two files, it is unclear what the time stamps
+/// count, no two are within the tolerance, or not one frame has both its files.
+FrameList readFrameList(const std::filesystem::path& folder, const DatasetOptions& options = {});
+
+/// The frames of readFrameList() alone.
 std::vector<FrameEntry> listFrames(const std::filesystem::path& folder,
                                    const DatasetOptions& options = {});
 

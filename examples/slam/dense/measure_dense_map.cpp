@@ -11,8 +11,10 @@
 #include "evaluate/trajectory.hpp"
 #include "slam/camera/calibration.hpp"
 #include "slam/dataset/frame.hpp"
+#include "slam/dataset/image_file.hpp"
 #include "slam/dense/dense_map.hpp"
 #include "slam/detection/file_detector.hpp"
+#include "slam/output/mask_files.hpp"
 #include "support/command_line.hpp"
 
 // The dense map of a rendered sequence with its true poses and boxes: what fusion alone does,
@@ -25,6 +27,7 @@ struct Arguments {
   std::filesystem::path sequence;
   std::filesystem::path output;
   std::size_t every = 5;
+  std::filesystem::path motion_masks;
   bool no_masks = false;
   bool no_checks = false;
 };
@@ -32,6 +35,16 @@ struct Arguments {
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
+}
+
+cv::Mat staticMaskOf(const Arguments& arguments, const RgbdFrame& frame,
+                     const std::vector<DetectionBox>& boxes) {
+  if (!arguments.motion_masks.empty()) {
+    const cv::Mat motion = readImage(stampedImage(arguments.motion_masks, frame.timestamp));
+    return staticMaskByMotion(motion, frame.depth,
+                              arguments.no_masks ? std::vector<DetectionBox>{} : boxes, {});
+  }
+  return arguments.no_masks ? cv::Mat() : staticMask(frame.bgr.size(), boxes, {});
 }
 
 void run(const Arguments& arguments) {
@@ -58,8 +71,7 @@ void run(const Arguments& arguments) {
     }
     const RgbdFrame frame = loadFrame(entry, calibration);
     const auto start = std::chrono::steady_clock::now();
-    const cv::Mat mask =
-        arguments.no_masks ? cv::Mat() : staticMask(frame.bgr.size(), boxes[stamp], {});
+    const cv::Mat mask = staticMaskOf(arguments, frame, boxes[stamp]);
     map.add(entry.index, thinKeyFrame(frame.bgr, frame.depth, mask));
     thinning += millisecondsSince(start);
     final_poses.push_back({entry.index, poses[stamp].inverse()});
@@ -90,9 +102,12 @@ int main(int argc, char** argv) {
   app.add_option("sequence", arguments.sequence, "Folder of hmcdyn_synthesize")->required();
   app.add_option("--output", arguments.output, "PLY file")->required();
   app.add_option("--every", arguments.every, "Every so many frames is a key frame")
-      ->check(CLI::PositiveNumber)
+      ->check(hmcdyn::support::aboveZero())
       ->capture_default_str();
   app.add_flag("--no-masks", arguments.no_masks, "Boxes are not left out");
+  app.add_option("--motion-masks", arguments.motion_masks,
+                 "Folder of motion masks (hmcdyn_mask, hmcdyn_slam), in place of whole boxes; with "
+                 "--no-masks without any box");
   app.add_flag("--no-checks", arguments.no_checks,
                "Points that are rarely seen or looked through stay");
   if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {

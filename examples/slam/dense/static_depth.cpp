@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
+
+#include <hmcdyn/motion_mask.hpp>
 
 namespace hmcdyn::slam {
 namespace {
@@ -20,13 +24,13 @@ void checkOptions(const StaticDepthOptions& options) {
   if (options.stride < 1 || !(options.min_depth > 0.0f) ||
       !(options.max_depth > options.min_depth && options.max_depth <= kLargestDepth) ||
       !(options.box_margin >= 0.0f) || !(options.point_radius >= 0.0f) ||
-      !(options.edge_share > 0.0f)) {
+      !(options.edge_share > 0.0f) || !(options.room_behind >= 0.0f)) {
     throw std::invalid_argument(fmt::format(
         "dense map: stride {}, depths {} to {} m, box margin {} px, point radius {} px, edge share "
-        "{}; expected a stride above 0, 0 < depths <= {} m in order, margin and radius of at least "
-        "0, a share above 0",
+        "{}, room behind {} m; expected a stride above 0, 0 < depths <= {} m in order, margin, "
+        "radius and room behind of at least 0, a share above 0",
         options.stride, options.min_depth, options.max_depth, options.box_margin,
-        options.point_radius, options.edge_share, kLargestDepth));
+        options.point_radius, options.edge_share, options.room_behind, kLargestDepth));
   }
 }
 
@@ -47,6 +51,41 @@ cv::Range pixels(float low, float high, int size) {
   const auto limit = static_cast<float>(size);
   return {static_cast<int>(std::ceil(std::clamp(low, 0.0f, limit))),
           static_cast<int>(std::floor(std::clamp(high, -1.0f, limit - 1.0f))) + 1};
+}
+
+/// The pixels of a box that is larger by the margin; none for a NaN or an inverted box.
+cv::Rect boundsOf(const DetectionBox& box, float margin, cv::Size size) {
+  if (!(box.x_min <= box.x_max && box.y_min <= box.y_max)) {
+    return {};
+  }
+  const cv::Range columns = pixels(box.x_min - margin, box.x_max + margin, size.width);
+  const cv::Range rows = pixels(box.y_min - margin, box.y_max + margin, size.height);
+  return columns.start < columns.end && rows.start < rows.end
+             ? cv::Rect(columns.start, rows.start, columns.size(), rows.size())
+             : cv::Rect();
+}
+
+/// Depth (m) of what moves or may move in a box: nine tenths of its pixels are nearer (its border
+/// is ragged, and so holds some of the room). Infinite where nothing does.
+float depthOfThing(const cv::Mat& motion, const cv::Mat& depth) {
+  constexpr float kShare = 0.9f;
+  std::vector<float> depths;
+  for (int row = 0; row < motion.rows; ++row) {
+    for (int column = 0; column < motion.cols; ++column) {
+      const float z = depth.at<float>(row, column);
+      if (motion.at<std::uint8_t>(row, column) >= static_cast<int>(MaskLabel::kStanding) &&
+          hasDepth(z)) {
+        depths.push_back(z);
+      }
+    }
+  }
+  if (depths.empty()) {
+    return std::numeric_limits<float>::infinity();
+  }
+  const auto place =
+      depths.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<float>(depths.size() - 1));
+  std::nth_element(depths.begin(), place, depths.end());
+  return *place;
 }
 
 bool atJump(const cv::Mat& depth, int row, int column, float share) {
@@ -75,23 +114,33 @@ cv::Mat staticMask(cv::Size size, Span<const DetectionBox> boxes,
         fmt::format("dense map: mask of {}x{}; expected pixels", size.width, size.height));
   }
   cv::Mat mask(size, CV_8UC1, cv::Scalar(255));
-  const auto clear = [&](float x_min, float y_min, float x_max, float y_max) {
-    const cv::Range columns = pixels(x_min, x_max, size.width);
-    const cv::Range rows = pixels(y_min, y_max, size.height);
-    if (columns.start < columns.end && rows.start < rows.end) {
-      mask(rows, columns).setTo(0);
-    }
-  };
   for (const DetectionBox& box : boxes) {
-    if (box.x_min <= box.x_max && box.y_min <= box.y_max) {  // false for a NaN
-      const float m = options.box_margin;
-      clear(box.x_min - m, box.y_min - m, box.x_max + m, box.y_max + m);
-    }
+    mask(boundsOf(box, options.box_margin, size)).setTo(0);
   }
   for (const cv::Point2f& point : dynamic_points) {
     if (std::isfinite(point.x) && std::isfinite(point.y)) {
-      const float r = options.point_radius;
-      clear(point.x - r, point.y - r, point.x + r, point.y + r);
+      mask(boundsOf({point.x, point.y, point.x, point.y}, options.point_radius, size)).setTo(0);
+    }
+  }
+  return mask;
+}
+
+cv::Mat staticMaskByMotion(const cv::Mat& motion, const cv::Mat& depth,
+                           Span<const DetectionBox> boxes, Span<const cv::Point2f> dynamic_points,
+                           const StaticDepthOptions& options) {
+  if (motion.type() != CV_8UC1 || depth.type() != CV_32FC1 || depth.size() != motion.size()) {
+    throw std::invalid_argument(fmt::format(
+        "dense map: motion mask {}x{} type {}, depth {}x{} type {}; expected CV_8UC1 and CV_32FC1 "
+        "of one size",
+        motion.cols, motion.rows, motion.type(), depth.cols, depth.rows, depth.type()));
+  }
+  const cv::Mat points = staticMask(motion.size(), {}, dynamic_points, options);
+  cv::Mat mask = withoutLabels(points, motion >= static_cast<int>(MaskLabel::kStanding), options);
+  for (const DetectionBox& box : boxes) {
+    const cv::Rect rect = boundsOf(box, options.box_margin, motion.size());
+    if (!rect.empty()) {
+      const float room = depthOfThing(motion(rect), depth(rect)) + options.room_behind;
+      mask(rect).setTo(0, ~(depth(rect) > room));  // true for a NaN
     }
   }
   return mask;

@@ -19,6 +19,9 @@ struct StaticDepthOptions {
   /// A pixel at a jump of depth above this share of its depth, from a neighbour two pixels away, is
   /// left out: it lies on neither of the two surfaces. Above 0.
   float edge_share = 0.05f;
+  /// In the box of a thing that moves or may move, only what is farther than the thing by more than
+  /// this (m) is the room's: arms and legs that the motion mask missed are not. At least 0.
+  float room_behind = 0.5f;
 };
 
 /// What the dense map needs of a key frame: thinned out, some 0.4 MB at 640x480.
@@ -35,6 +38,17 @@ struct ThinnedKeyFrame {
 /// @throws std::invalid_argument on a size without pixels or an option out of range.
 cv::Mat staticMask(cv::Size size, Span<const DetectionBox> boxes,
                    Span<const cv::Point2f> dynamic_points, const StaticDepthOptions& options = {});
+
+/// staticMask() with a motion mask in place of whole boxes: 0 on what moves or may move (kMoving,
+/// kStanding) and box_margin (px) around it, inside the boxes with their margin on what does not
+/// lie behind that (room_behind), and around the points. A box in which the mask names nothing is
+/// left out as a whole.
+/// @param motion CV_8UC1, values of MaskLabel. @param depth CV_32FC1 (m), 0, negative or NaN =
+/// none, of the same size. @throws std::invalid_argument on other types, different sizes, no
+/// pixels, or an option out of range.
+cv::Mat staticMaskByMotion(const cv::Mat& motion, const cv::Mat& depth,
+                           Span<const DetectionBox> boxes, Span<const cv::Point2f> dynamic_points,
+                           const StaticDepthOptions& options = {});
 
 /// The mask without the pixels that have a label, and box_margin (px) around them.
 /// @param mask CV_8UC1. @param labels any type of one channel, 0 = background, of the mask's size.

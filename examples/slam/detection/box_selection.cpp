@@ -67,26 +67,4 @@ std::vector<DetectionBox> suppressOverlaps(const std::vector<DetectionBox>& boxe
   return result;
 }
 
-std::vector<DetectionBox> clipToImage(const std::vector<DetectionBox>& boxes, cv::Size image) {
-  const auto right = static_cast<float>(image.width - 1);
-  const auto bottom = static_cast<float>(image.height - 1);
-  std::vector<DetectionBox> clipped;
-  for (DetectionBox box : boxes) {
-    const bool inverted = box.x_max < box.x_min || box.y_max < box.y_min;
-    const bool outside =
-        box.x_max < 0.0f || box.y_max < 0.0f || box.x_min > right || box.y_min > bottom;
-    if (!inverted && outside) {
-      continue;
-    }
-    if (!inverted) {
-      box.x_min = std::max(box.x_min, 0.0f);
-      box.y_min = std::max(box.y_min, 0.0f);
-      box.x_max = std::min(box.x_max, right);
-      box.y_max = std::min(box.y_max, bottom);
-    }
-    clipped.push_back(box);
-  }
-  return clipped;
-}
-
 }  // namespace hmcdyn::slam

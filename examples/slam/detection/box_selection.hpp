@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 
+#include <hmcdyn/box_carrier.hpp>
 #include <hmcdyn/types.hpp>
 
 #include "slam/detection/detector_options.hpp"
@@ -23,9 +24,5 @@ std::vector<DetectionBox> keepWanted(const std::vector<DetectionBox>& boxes,
 /// first; equal scores keep their order.
 std::vector<DetectionBox> suppressOverlaps(const std::vector<DetectionBox>& boxes,
                                            float nms_threshold);
-
-/// The boxes cut to the pixels 0..cols - 1 and 0..rows - 1; one that is wholly outside is left
-/// out. An inverted box (a maximum below its minimum) holds no point and is kept as it is.
-std::vector<DetectionBox> clipToImage(const std::vector<DetectionBox>& boxes, cv::Size image);
 
 }  // namespace hmcdyn::slam

@@ -134,7 +134,7 @@ class DarknetDetector final : public ObjectDetector {
           fmt::format("with an input of {}x{}: {}", input_.width, input_.height, error.err),
           kAdvice);
     } catch (const std::invalid_argument& error) {
-      throw modelError(options_.model, error.what(), kAdvice);
+      throw headError(options_.model, fmt::format("{}; {}", error.what(), kAdvice));
     }
   }
 

@@ -37,7 +37,9 @@ DetectionThread::Answer DetectionThread::detect(ObjectDetector& detector,
   answer.detection.timestamp = request.timestamp;
   const StageTimer timer;
   try {
-    answer.detection.boxes = detector.detect(request.bgr, request.timestamp);
+    Seen seen = detector.see(request.bgr, request.timestamp);
+    answer.detection.boxes = std::move(seen.boxes);
+    answer.detection.labels = std::move(seen.labels);
   } catch (const std::exception& error) {
     answer.detection.failed = true;
     answer.error = error.what();
@@ -79,6 +81,7 @@ std::optional<Detection> DetectionThread::tryTakeNewest() {
 Detection DetectionThread::account(Answer answer) {
   if (answer.detection.failed) {
     if (++counts_.failed == 1) {
+      counts_.first_failure = fmt::format("at frame {}: {}", answer.detection.frame, answer.error);
       report_(
           fmt::format("detector {}: failed at frame {}, which goes without its boxes: {}; further "
                       "failures are only counted",

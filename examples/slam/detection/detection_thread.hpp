@@ -29,6 +29,7 @@ struct Detection {
   std::size_t frame = 0;
   double timestamp = 0.0;           ///< Of the image (s).
   std::vector<DetectionBox> boxes;  ///< Empty where it failed.
+  cv::Mat labels;                   ///< A mask where it makes one, Seen::labels.
   bool failed = false;              ///< The detector threw: nothing is known about this frame.
   double wall_ms = 0.0;             ///< Of the detector.
   double cpu_ms = 0.0;              ///< Of the detector's thread, helpers of OpenCV's not counted.
@@ -36,9 +37,10 @@ struct Detection {
 
 struct DetectionCounts {
   std::size_t requested = 0;
-  std::size_t detected = 0;  ///< Frames that the detector answered.
-  std::size_t replaced = 0;  ///< Requests that a newer frame took the place of.
-  std::size_t failed = 0;    ///< Frames at which the detector threw.
+  std::size_t detected = 0;   ///< Frames that the detector answered.
+  std::size_t replaced = 0;   ///< Requests that a newer frame took the place of.
+  std::size_t failed = 0;     ///< Frames at which the detector threw.
+  std::string first_failure;  ///< What it threw first, and at which frame; empty = it never did.
 };
 
 /// A detector on a thread of its own, asked by one other thread.

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "slam/detection/box_selection.hpp"
 #include "slam/detection/coco_classes.hpp"
+#include "slam/detection/command_detector.hpp"
 #include "slam/detection/darknet_detector.hpp"
 #include "slam/detection/file_detector.hpp"
 #include "slam/detection/hog_detector.hpp"
@@ -36,10 +38,11 @@ struct DetectorType {
   std::unique_ptr<ObjectDetector> (*make)(const DetectorOptions&);
 };
 
-constexpr std::array<DetectorType, 7> kTypes{{
+constexpr std::array<DetectorType, 8> kTypes{{
     {"darknet", makeDarknetDetector},
     {"yolo", makeOnnxDetector},
     {"file", makeFileDetector},
+    {"command", makeCommandDetector},
     {"hog", makeHogDetector},
     {"motion",
      [](const DetectorOptions&) -> std::unique_ptr<ObjectDetector> {
@@ -66,6 +69,25 @@ void requireShare(const char* option, float value) {
   }
 }
 
+void checkCommand(const DetectorOptions& options) {
+  if (!options.command.line.empty() && options.type != "command") {
+    throw std::invalid_argument(fmt::format(
+        "--command is given, but the detector is '{}'; expected --detector command", options.type));
+  }
+  for (const auto& [name, seconds] : {std::pair("timeout", options.command.timeout),
+                                      std::pair("start_timeout", options.command.start_timeout)}) {
+    constexpr double kLongest = 1e6;
+    if (!(seconds > 0.0 && seconds <= kLongest)) {
+      throw std::invalid_argument(fmt::format(
+          "CommandOptions::{} is {} s; expected more than 0, up to {}", name, seconds, kLongest));
+    }
+  }
+  if (options.command.restarts < 0) {
+    throw std::invalid_argument(fmt::format("CommandOptions::restarts is {}; expected 0 or more",
+                                            options.command.restarts));
+  }
+}
+
 void checkOptions(const DetectorOptions& options) {
   requireShare("score_threshold", options.score_threshold);
   requireShare("nms_threshold", options.nms_threshold);
@@ -84,6 +106,7 @@ void checkOptions(const DetectorOptions& options) {
     throw std::invalid_argument(fmt::format(
         "DetectorOptions::mask_margin is {} px; expected 0 or more", options.mask_margin));
   }
+  checkCommand(options);
   if (!options.masks.empty() && options.type != "masks") {
     throw std::invalid_argument(fmt::format(
         "--masks is given, but the detector is '{}'; expected --detector masks", options.type));

@@ -14,6 +14,7 @@
 #include "slam/dataset/file_io.hpp"
 #include "slam/detection/box_selection.hpp"
 #include "slam/detection/coco_classes.hpp"
+#include "support/text_table.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -21,29 +22,57 @@ namespace {
 constexpr std::size_t kNumbersBehindClass = 5;  // x_min y_min x_max y_max score
 constexpr std::size_t kLeastFields = 2 + kNumbersBehindClass;
 
-// Names such as "traffic light" spread over two fields.
-int parseClass(const TextRow& row, const std::filesystem::path& file) {
+// What a row that is no box may be.
+std::string guessOfRow(const support::TextRow& row) {
+  const bool numbers = std::all_of(row.fields.begin(), row.fields.end(), [](const auto& field) {
+    double ignored = 0.0;
+    return support::parseNumber(field, ignored);
+  });
+  if (!numbers) {
+    double ignored = 0.0;
+    const bool has_class =
+        row.fields.size() + 1 == kLeastFields && support::parseNumber(row.fields.front(), ignored);
+    return has_class ? "; is the score missing? Write 1 behind each line" : "";
+  }
+  switch (row.fields.size()) {
+    case 5:
+      return "; is this \"class x y width height\" or \"x y width height score\", YOLO's file of "
+             "one "
+             "image? Write all images into one file, with time stamp, class, corners in pixels and "
+             "score";
+    case 6:
+      return "; is the class missing (\"timestamp x y width height score\")? Write it behind the "
+             "time stamp, and corners in place of width and height";
+    case 10:
+      return "; is this the MOT challenge's \"frame id x y width height ...\"? Convert it";
+    default:
+      return support::guessOfFields(row, kLeastFields);
+  }
+}
+
+// Names such as "traffic light" spread over two fields; a number may be written as 0.0.
+int parseClass(const support::TextRow& row, const std::filesystem::path& file) {
   const auto end = row.fields.end() - kNumbersBehindClass;
   const std::string text = fmt::format("{}", fmt::join(row.fields.begin() + 1, end, " "));
   if (const auto class_id = findCocoClass(text)) {
     return *class_id;
   }
-  for (int class_id = 0; class_id < kCocoClassCount; ++class_id) {
-    if (text == std::to_string(class_id)) {
-      return class_id;
-    }
+  double number = 0.0;
+  if (support::parseNumber(text, number) && number >= 0.0 && number < kCocoClassCount &&
+      number == std::floor(number)) {
+    return static_cast<int>(number);
   }
   throw errorAt(file, row.line,
-                fmt::format("class is '{}'; expected 0..{} or the name of a COCO class", text,
-                            kCocoClassCount - 1));
+                fmt::format("class is '{}'; expected 0..{} or the name of a COCO class{}",
+                            support::printable(text), kCocoClassCount - 1, guessOfRow(row)));
 }
 
-TimedBox parseRow(const TextRow& row, const std::filesystem::path& file) {
+TimedBox parseRow(const support::TextRow& row, const std::filesystem::path& file) {
   if (row.fields.size() < kLeastFields) {
     throw errorAt(file, row.line,
                   fmt::format("{} fields; expected \"timestamp class x_min y_min x_max y_max "
-                              "score\"",
-                              row.fields.size()));
+                              "score\"{}",
+                              row.fields.size(), guessOfRow(row)));
   }
   const std::size_t first = row.fields.size() - kNumbersBehindClass;
   const auto number = [&](std::size_t i, const char* what) {
@@ -58,7 +87,11 @@ TimedBox parseRow(const TextRow& row, const std::filesystem::path& file) {
   timed.box.y_max = number(3, "y_max");
   timed.box.score = number(4, "score");
   if (timed.box.score < 0.0f || timed.box.score > 1.0f) {
-    throw errorAt(file, row.line, fmt::format("score is {}; expected 0..1", timed.box.score));
+    throw errorAt(file, row.line,
+                  fmt::format("score is {}; expected 0..1{}", timed.box.score,
+                              timed.box.score > 1.0f && timed.box.score <= 100.0f
+                                  ? "; is it per cent, or a width in the place of the score?"
+                                  : ""));
   }
   return timed;
 }
@@ -75,7 +108,7 @@ class FileDetector final : public ObjectDetector {
     for (auto timed = first; timed != last; ++timed) {
       boxes.push_back(timed->box);
     }
-    std::vector<DetectionBox> kept = clipToImage(keepWanted(boxes, options_), bgr.size());
+    std::vector<DetectionBox> kept = clipToImage(boxes, bgr.size());
     std::stable_sort(kept.begin(), kept.end(), [](const DetectionBox& a, const DetectionBox& b) {
       return a.score > b.score;
     });
@@ -118,7 +151,9 @@ class FileDetector final : public ObjectDetector {
 
 std::vector<TimedBox> readBoxFile(const std::filesystem::path& file) {
   std::vector<TimedBox> boxes;
-  for (const TextRow& row : readTextRows(file)) {
+  const support::TextTable table =
+      support::readTable(file, [](std::size_t fields) { return fields >= kLeastFields; });
+  for (const support::TextRow& row : table.rows) {
     boxes.push_back(parseRow(row, file));
   }
   std::stable_sort(boxes.begin(), boxes.end(), [](const TimedBox& left, const TimedBox& right) {
@@ -131,7 +166,8 @@ std::unique_ptr<ObjectDetector> makeFileDetector(const DetectorOptions& options)
   if (options.boxes.empty()) {
     throw std::invalid_argument("detector 'file': --boxes is not given; it needs --boxes FILE");
   }
-  return std::make_unique<FileDetector>(readBoxFile(options.boxes), options);
+  BoxReview review = reviewBoxes(readBoxFile(options.boxes), options, options.boxes);
+  return std::make_unique<FileDetector>(std::move(review.kept), options);
 }
 
 }  // namespace hmcdyn::slam

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "slam/dataset/image_file.hpp"
+#include "support/time_stamps.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -51,6 +52,11 @@ MaskFolder::MaskFolder(std::filesystem::path folder, cv::Size size, double time_
   if (entries_.empty()) {
     throw std::runtime_error(
         fmt::format("{}: holds no .png; expected masks, one a frame", folder_.string()));
+  }
+  if (const auto unit = support::unitSince1970(entries_.front().timestamp)) {
+    for (Entry& entry : entries_) {
+      entry.timestamp *= support::secondsOf(*unit, 1.0);
+    }
   }
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
     return a.timestamp < b.timestamp || (a.timestamp == b.timestamp && a.file < b.file);

@@ -10,8 +10,9 @@ namespace hmcdyn::slam {
 
 /// A folder of label images, one a frame: PNG, 8 or 16 bit, one channel, 0 = background; a file is
 /// named by the time stamp (s) of the colour image that it belongs to, such as
-/// 1341846434.710184.png. What hmcdyn_synthesize writes as mask/ is one. Files that are no PNG are
-/// not looked at; images are read when they are asked for.
+/// 1341846434.710184.png, or by the milli-, micro- or nanoseconds since 1970. What
+/// hmcdyn_synthesize writes as mask/ is one. Files that are no PNG are not looked at; images are
+/// read when they are asked for.
 class MaskFolder {
  public:
   /// @param size of the camera's images, which the first mask must have.

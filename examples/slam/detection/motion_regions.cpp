@@ -8,14 +8,17 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <hmcdyn/box_carrier.hpp>
 #include <hmcdyn/epipolar.hpp>
 #include <hmcdyn/fundamental.hpp>
 
-#include "slam/detection/box_carrier.hpp"
 #include "slam/detection/option_check.hpp"
 
 namespace hmcdyn::slam {
 namespace {
+
+/// Regions are followed on images of half the size: their flow needs no more.
+constexpr float kFlowScale = 0.5f;
 
 void checkOptions(const MotionRegionOptions& o) {
   requireOption(o.reduction >= 1 && o.reduction <= 16, "MotionRegionOptions::reduction",
@@ -126,10 +129,10 @@ std::vector<float> distancesOf(const KeyPoints& points, const FlowMatches& match
   const std::vector<float> current_u = whole(points.u);
   const std::vector<float> current_v = whole(points.v);
   const PointPairsView pairs{earlier_u, earlier_v, current_u, current_v};
-  MotionModelOptions options;
+  TwoViewOptions options;
   options.max_iterations = region.max_iterations;
   options.seed = region.seed;
-  return modelDistances(estimateMotionModel(pairs, {}, options).model, pairs);
+  return modelDistances(estimateTwoViewModel(pairs, {}, options).model, pairs);
 }
 
 /// What the flow says about a segment.

@@ -12,6 +12,11 @@ std::runtime_error modelError(const std::filesystem::path& model, const std::str
                                         model.string(), CV_VERSION, reason, advice));
 }
 
+std::runtime_error headError(const std::filesystem::path& model, const std::string& what) {
+  return std::runtime_error(
+      fmt::format("{}: hmcdyn does not decode this network: {}", model.string(), what));
+}
+
 void useCpu(cv::dnn::Net& net) {
   net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
   net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);

@@ -16,6 +16,10 @@ namespace hmcdyn::slam {
 std::runtime_error modelError(const std::filesystem::path& model, const std::string& reason,
                               const std::string& advice);
 
+/// The error of a model that OpenCV runs and whose outputs are not decoded here: names the file,
+/// what it looks like and what to export.
+std::runtime_error headError(const std::filesystem::path& model, const std::string& what);
+
 /// The outputs of a network for an image (CV_8UC3), which is scaled to the input's size; red,
 /// green and blue in 0..1. Runs on the CPU with OpenCV's own kernels.
 std::vector<cv::Mat> runNetwork(cv::dnn::Net& net, const cv::Mat& bgr, cv::Size input);

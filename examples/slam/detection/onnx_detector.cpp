@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/detection/onnx_detector.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "slam/detection/letterbox.hpp"
 #include "slam/detection/network.hpp"
 #include "slam/detection/yolo_decode.hpp"
+#include "slam/detection/yolo_heads.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -31,19 +33,20 @@ cv::dnn::Net loadNet(const std::filesystem::path& model) {
   }
 }
 
+bool hasHead(const cv::Mat& output) {
+  try {
+    yoloHeadOf(output);
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
 // YOLOv5 has exports with three more outputs, those of the single scales: the one with a head's
 // shape counts.
-std::vector<DetectionBox> decode(const std::vector<cv::Mat>& outputs, float score_threshold) {
-  std::string refusal = "the network has no output";
-  for (const cv::Mat& output : outputs) {
-    try {
-      return yoloHeadOf(output) == YoloHead::kYoloV5 ? decodeYoloV5(output, score_threshold)
-                                                     : decodeYoloV8(output, score_threshold);
-    } catch (const std::invalid_argument& error) {
-      refusal = error.what();
-    }
-  }
-  throw std::invalid_argument(refusal);
+const cv::Mat* headAmong(const std::vector<cv::Mat>& outputs) {
+  const auto head = std::find_if(outputs.begin(), outputs.end(), hasHead);
+  return head == outputs.end() ? nullptr : &*head;
 }
 
 class OnnxDetector final : public ObjectDetector {
@@ -51,23 +54,35 @@ class OnnxDetector final : public ObjectDetector {
   OnnxDetector(const cv::dnn::Net& net, int input_size, DetectorOptions options)
       : net_(net), input_size_(input_size), options_(std::move(options)) {
     const std::string size = fmt::format("{0}x{0}", input_size_);
+    std::vector<cv::Mat> outputs;
     try {
-      detect(cv::Mat::zeros(input_size_, input_size_, CV_8UC3), 0.0);
+      outputs = run(cv::Mat::zeros(input_size_, input_size_, CV_8UC3));
     } catch (const cv::Exception& error) {
       throw modelError(options_.model, fmt::format("with an input of {}: {}", size, error.err),
                        "give the export's own input size (--input-size)");
-    } catch (const std::invalid_argument& error) {
-      throw modelError(options_.model, error.what(), "give a YOLOv5 or YOLOv8 detector");
+    }
+    const cv::Mat* const head = headAmong(outputs);
+    const std::string wrong =
+        head == nullptr ? guessOfHead(outputs) : whatIsWrongWithHead(*head, input_size_);
+    if (!wrong.empty()) {
+      throw headError(options_.model, wrong);
     }
   }
 
   std::vector<DetectionBox> detect(const cv::Mat& bgr, double /*timestamp*/) override {
     checkColorImage(bgr);
+    const std::vector<cv::Mat> outputs = run(bgr);
+    const cv::Mat* const head = headAmong(outputs);
+    if (head == nullptr) {
+      throw headError(options_.model, guessOfHead(outputs));
+    }
+    const float threshold = options_.score_threshold;
+    const std::vector<DetectionBox> candidates = yoloHeadOf(*head) == YoloHead::kYoloV5
+                                                     ? decodeYoloV5(*head, threshold)
+                                                     : decodeYoloV8(*head, threshold);
+    std::vector<DetectionBox> boxes =
+        suppressOverlaps(keepWanted(candidates, options_), options_.nms_threshold);
     const Letterbox letterbox = makeLetterbox(bgr.size(), input_size_);
-    const std::vector<cv::Mat> outputs =
-        runNetwork(net_, toInput(bgr, letterbox), {input_size_, input_size_});
-    std::vector<DetectionBox> boxes = suppressOverlaps(
-        keepWanted(decode(outputs, options_.score_threshold), options_), options_.nms_threshold);
     for (DetectionBox& box : boxes) {
       box = toImage(box, letterbox);
     }
@@ -79,6 +94,11 @@ class OnnxDetector final : public ObjectDetector {
   }
 
  private:
+  std::vector<cv::Mat> run(const cv::Mat& bgr) {
+    const Letterbox letterbox = makeLetterbox(bgr.size(), input_size_);
+    return runNetwork(net_, toInput(bgr, letterbox), {input_size_, input_size_});
+  }
+
   cv::dnn::Net net_;
   int input_size_;
   DetectorOptions options_;

@@ -243,12 +243,16 @@ BundleProblem bundleOf(const LoopSnapshot& snapshot, const Places& places,
     problem.poses.push_back({pose, problem.poses.empty()});
   }
   problem.points = points;
+  for (const LoopSnapshot::Point& point : snapshot.points) {
+    problem.depth_offsets.push_back(point.depth_offset);
+  }
   problem.observations.reserve(snapshot.sightings.size());
   for (const auto& sighting : snapshot.sightings) {
     const int point = places.points.of(sighting.point, "sightings.point");
     problem.observations.push_back({places.key_frames.of(sighting.key_frame, "sightings.key_frame"),
                                     into[static_cast<std::size_t>(point)], sighting.u, sighting.v,
-                                    sighting.sigma, sighting.depth, sighting.weight});
+                                    sighting.sigma, sighting.depth, sighting.weight,
+                                    sighting.depth_sigma});
   }
   return problem;
 }
@@ -322,7 +326,11 @@ LoopClosure closeLoops(const LoopSnapshot& snapshot, const LoopCloserOptions& op
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto target = static_cast<std::size_t>(into[i]);
-    closure.points.push_back({snapshot.points[i].id, points[target], snapshot.points[target].id});
+    const double offset = closure.closed && !closure.bundle.depth_offsets.empty()
+                              ? closure.bundle.depth_offsets[target]
+                              : snapshot.points[target].depth_offset;
+    closure.points.push_back(
+        {snapshot.points[i].id, points[target], snapshot.points[target].id, offset});
     closure.fused += target != i ? 1 : 0;
   }
   return closure;

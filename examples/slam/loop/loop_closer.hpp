@@ -36,6 +36,7 @@ struct LoopSnapshot {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< World (m).
     std::size_t anchor =
         0;  ///< Id of the key frame that it moves with, e.g. the first that saw it.
+    double depth_offset = 0.0;  ///< Of its depths (1/m), see BundleProblem.
   };
   /// As BundleObservation, with ids for indices.
   struct Sighting {
@@ -45,6 +46,7 @@ struct LoopSnapshot {
     float sigma = 1.0f;        ///< px
     float depth = 0.0f;        ///< m, 0 = none
     float weight = 1.0f;
+    float depth_sigma = 0.0f;  ///< m, see BundleObservation
   };
 
   PinholeCamera camera;
@@ -83,6 +85,7 @@ struct CorrectedPoint {
   int id = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< World (m).
   int fused_into = 0;  ///< Id of the point that it is one with; its own where it is not fused.
+  double depth_offset = 0.0;  ///< Of its depths (1/m).
 };
 
 struct LoopClosure {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
+#include <hmcdyn/depth_error.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn::slam {
@@ -31,12 +33,10 @@ struct LoopKeyFrame {
 ///   descriptors are of 32 bytes, and each sigma is positive and finite.
 void checkLoopKeyFrame(const LoopKeyFrame& key_frame, const char* argument);
 
-/// Depth noise of the sensor: sigma = floor + quadratic z^2, see PoseRefinementOptions.
-struct DepthNoise {
-  double floor = 0.001;         ///< m
-  double quadratic = 1.425e-3;  ///< 1/m
-
-  double sigma(double depth) const noexcept { return floor + quadratic * depth * depth; }
-};
+/// Standard deviation (m) of the difference of two measured depths of one point; 1 where there is
+/// no depth.
+inline float sigmaOfDifference(float depth, const DepthErrorModel& model) {
+  return hasDepth(depth) ? std::sqrt(2.0f) * relativeDepthError(depth, model) : 1.0f;
+}
 
 }  // namespace hmcdyn::slam

@@ -82,7 +82,8 @@ GuidedSearch searchAround(const LoopKeyFrame& from, const LoopKeyFrame& to,
     if (const auto j = neighbourOf(to, grid, pixel, options.neighbour_radius)) {
       const double seen = to.points.depth[*j];
       const double tolerance =
-          3.0 * std::hypot(options.ransac.noise.sigma(depth), options.ransac.noise.sigma(seen)) +
+          3.0 * std::hypot(relativeDepthError(depth, options.ransac.depth_error),
+                           relativeDepthError(seen, options.ransac.depth_error)) +
           options.depth_tolerance * p.z();
       ++compared;
       agreeing += std::abs(p.z() - seen) <= tolerance ? 1 : 0;
@@ -113,7 +114,7 @@ PoseRefinementResult refine(const LoopKeyFrame& from, const LoopKeyFrame& to,
                             const Eigen::Isometry3d& to_from, const PinholeCamera& camera,
                             const LoopVerificationOptions& options) {
   const auto root2 = std::sqrt(2.0f);
-  std::vector<float> x, y, z, u, v, sigma, depth;
+  std::vector<float> x, y, z, u, v, sigma, depth, depth_sigma;
   for (const auto& [i, j] : pairs) {
     const auto a = static_cast<std::size_t>(i);
     const auto b = static_cast<std::size_t>(j);
@@ -126,12 +127,11 @@ PoseRefinementResult refine(const LoopKeyFrame& from, const LoopKeyFrame& to,
     v.push_back(to.points.v[b]);
     sigma.push_back(root2 * std::max(from.sigma[a], to.sigma[b]));
     depth.push_back(to.points.depth[b]);
+    depth_sigma.push_back(sigmaOfDifference(depth.back(), options.ransac.depth_error));
   }
   PoseRefinementOptions refinement;
   refinement.depth_row = DepthRow::kDepth;
-  refinement.depth_noise_floor = std::sqrt(2.0) * options.ransac.noise.floor;
-  refinement.depth_noise_quadratic = std::sqrt(2.0) * options.ransac.noise.quadratic;
-  return refinePose({x, y, z, u, v, sigma, depth, {}}, camera, to_from, refinement);
+  return refinePose({x, y, z, u, v, sigma, depth, {}, depth_sigma}, camera, to_from, refinement);
 }
 
 /// Squares of the image with a point in them.
@@ -233,7 +233,8 @@ LoopVerification verifyLoop(const LoopKeyFrame& from, const LoopKeyFrame& to,
     return result;
   }
   result.to_from = refined.camera_from_world;
-  result.information = refined.covariance->inverse();
+  const Eigen::Matrix<double, 6, 6> covariance = *refined.covariance;
+  result.information = covariance.inverse();
   std::vector<int> of_from;
   std::vector<int> of_to;
   for (std::size_t k = 0; k < search.pairs.size(); ++k) {

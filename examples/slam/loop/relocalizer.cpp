@@ -102,7 +102,7 @@ std::optional<Eigen::Isometry3d> perspectivePose(const Matched& matched, const L
 PoseRefinementResult refine(const Matched& matched, const LoopKeyFrame& frame,
                             const Eigen::Isometry3d& initial, const PinholeCamera& camera,
                             const RelocalizerOptions& options) {
-  std::vector<float> x, y, z, u, v, sigma, depth;
+  std::vector<float> x, y, z, u, v, sigma, depth, depth_sigma;
   for (std::size_t k = 0; k < matched.matches.size(); ++k) {
     const auto j = static_cast<std::size_t>(matched.matches[k].to);
     const Eigen::Vector3f point = matched.points[k].cast<float>();
@@ -113,13 +113,11 @@ PoseRefinementResult refine(const Matched& matched, const LoopKeyFrame& frame,
     v.push_back(frame.points.v[j]);
     sigma.push_back(frame.sigma[j]);
     depth.push_back(frame.points.depth[j]);
+    depth_sigma.push_back(sigmaOfDifference(depth.back(), options.ransac.depth_error));
   }
   PoseRefinementOptions refinement;
   refinement.depth_row = DepthRow::kDepth;
-  // Both depths are measured: the variance is twice one's.
-  refinement.depth_noise_floor = std::sqrt(2.0) * options.ransac.noise.floor;
-  refinement.depth_noise_quadratic = std::sqrt(2.0) * options.ransac.noise.quadratic;
-  return refinePose({x, y, z, u, v, sigma, depth, {}}, camera, initial, refinement);
+  return refinePose({x, y, z, u, v, sigma, depth, {}, depth_sigma}, camera, initial, refinement);
 }
 
 /// Tries one key frame, and takes it over where it is the best so far.

@@ -37,10 +37,7 @@ void checkInput(const std::vector<SightedPair>& pairs, const PinholeCamera& came
                 const RigidRansacOptions& options) {
   requirePositive("camera.fx", camera.fx);
   requirePositive("camera.fy", camera.fy);
-  requireNotNegative("options.noise.floor", options.noise.floor);
-  requireNotNegative("options.noise.quadratic", options.noise.quadratic);
-  requirePositive("options.noise.floor + options.noise.quadratic",
-                  options.noise.floor + options.noise.quadratic);
+  checkModel(options.depth_error);
   requirePositive("options.chi2_pixel", options.chi2_pixel);
   requirePositive("options.chi2_depth", options.chi2_depth);
   requireAtLeast("options.max_iterations", options.max_iterations, 1);
@@ -55,23 +52,23 @@ void checkInput(const std::vector<SightedPair>& pairs, const PinholeCamera& came
 }
 
 std::optional<Place> placeOf(const SightedPoint& point, const PinholeCamera& camera,
-                             const DepthNoise& noise) {
+                             const DepthErrorModel& depth_error) {
   if (!std::isfinite(point.u) || !std::isfinite(point.v) || !std::isfinite(point.depth) ||
       !(point.depth > 0.0)) {
     return std::nullopt;
   }
   return Place{camera.unproject(point.u, point.v, point.depth),
                {point.u, point.v},
-               noise.sigma(point.depth),
+               relativeDepthError(static_cast<double>(point.depth), depth_error),
                point.sigma};
 }
 
 std::vector<PlacePair> placesOf(const std::vector<SightedPair>& pairs, const PinholeCamera& camera,
-                                const DepthNoise& noise) {
+                                const DepthErrorModel& depth_error) {
   std::vector<PlacePair> places;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::optional<Place> from = placeOf(pairs[i].from, camera, noise);
-    const std::optional<Place> to = placeOf(pairs[i].to, camera, noise);
+    const std::optional<Place> from = placeOf(pairs[i].from, camera, depth_error);
+    const std::optional<Place> to = placeOf(pairs[i].to, camera, depth_error);
     if (from && to) {
       places.push_back({i, *from, *to});
     }
@@ -208,7 +205,7 @@ double samplesNeeded(std::size_t inliers, std::size_t pairs, double confidence) 
 RigidRansacResult rigidRansac(const std::vector<SightedPair>& pairs, const PinholeCamera& camera,
                               const RigidRansacOptions& options) {
   checkInput(pairs, camera, options);
-  const std::vector<PlacePair> places = placesOf(pairs, camera, options.noise);
+  const std::vector<PlacePair> places = placesOf(pairs, camera, options.depth_error);
   RigidRansacResult result;
   result.inlier.assign(pairs.size(), 0);
   result.usable = places.size();

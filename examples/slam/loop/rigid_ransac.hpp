@@ -28,7 +28,7 @@ struct SightedPair {
 };
 
 struct RigidRansacOptions {
-  DepthNoise noise;
+  DepthErrorModel depth_error;
   double chi2_pixel = 9.210;  ///< Inlier up to this squared distance in the image: 99 % of chi2(2).
   double chi2_depth = 6.635;  ///< And in depth: 99 % of chi2(1).
   int max_iterations = 500;   ///< Samples, >= 1.

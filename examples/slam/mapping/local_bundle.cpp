@@ -49,6 +49,36 @@ std::vector<int> fixedKeyFrames(const Map& map, const std::vector<int>& points,
   return chosen;
 }
 
+/// What the depths of the bundle's points say, key frame by key frame.
+class DepthSigmas {
+ public:
+  /// @param key_frames numbers of key frames are its keys. @param points sorted.
+  DepthSigmas(const Map& map, const std::map<int, int>& key_frames,
+              const std::vector<int>& points) {
+    for (const auto& [key_frame, pose] : key_frames) {
+      const Frame& frame = map.keyFrames()[static_cast<std::size_t>(key_frame)].frame;
+      std::vector<std::size_t>& used = used_[key_frame];
+      for (std::size_t i = 0; i < frame.map_point.size(); ++i) {
+        if (std::binary_search(points.begin(), points.end(), frame.map_point[i])) {
+          used.push_back(i);
+        }
+      }
+      sigmas_[key_frame] = depthSigmas(frame, used, map.options().depth_error);
+    }
+  }
+
+  /// @param key_point sees one of the points.
+  float of(int key_frame, std::size_t key_point) const {
+    const std::vector<std::size_t>& used = used_.at(key_frame);
+    const auto place = std::lower_bound(used.begin(), used.end(), key_point) - used.begin();
+    return sigmas_.at(key_frame)[static_cast<std::size_t>(place)];
+  }
+
+ private:
+  std::map<int, std::vector<std::size_t>> used_;  ///< Key points, ascending.
+  std::map<int, std::vector<float>> sigmas_;      ///< Of their depths (m).
+};
+
 BundleObservation observe(const Frame& frame, std::size_t key_point, int pose, int point) {
   BundleObservation observation;
   observation.pose = pose;
@@ -102,15 +132,19 @@ LocalBundle makeLocalBundle(const Map& map, const LocalBundleOptions& options) {
       bundle.problem.motions.push_back({from->second, pose, motion->to_from, motion->information});
     }
   }
+  const DepthSigmas depth_sigmas(map, pose_of, bundle.points);
   for (std::size_t k = 0; k < bundle.points.size(); ++k) {
     const MapPoint& point = map.points()[static_cast<std::size_t>(bundle.points[k])];
     bundle.problem.points.push_back(point.position);
+    bundle.problem.depth_offsets.push_back(point.depth_offset);
     for (const Observation& seen : point.observations) {
       const auto pose = pose_of.find(seen.key_frame);
       if (pose != pose_of.end()) {
         bundle.problem.observations.push_back(
             observe(map.keyFrames()[static_cast<std::size_t>(seen.key_frame)].frame, seen.key_point,
                     pose->second, static_cast<int>(k)));
+        bundle.problem.observations.back().depth_sigma =
+            depth_sigmas.of(seen.key_frame, seen.key_point);
       }
     }
   }
@@ -126,6 +160,7 @@ MapCorrection toCorrection(const LocalBundle& bundle, const BundleSolution& solu
   }
   for (std::size_t k = 0; k < bundle.points.size(); ++k) {
     correction.points.emplace_back(bundle.points[k], solution.points[k]);
+    correction.depth_offsets.emplace_back(bundle.points[k], solution.depth_offsets[k]);
   }
   if (!judgesObservations(solution)) {
     return correction;

@@ -201,8 +201,10 @@ std::size_t LoopClosing::loopsClosed() const noexcept {
 }
 
 void LoopClosing::rethrowKept() {
-  if (kept_error_) {
-    std::rethrow_exception(std::exchange(kept_error_, nullptr));
+  if (!kept_errors_.empty()) {
+    const std::exception_ptr oldest = std::move(kept_errors_.front());
+    kept_errors_.pop_front();
+    std::rethrow_exception(oldest);
   }
 }
 
@@ -252,7 +254,8 @@ std::optional<Eigen::Isometry3d> LoopClosing::relocalize(const Frame& frame, con
     try {
       takeUp(worker_.take(), map);
     } catch (...) {
-      kept_error_ = std::current_exception();  // of a key frame that waited before the question
+      kept_errors_.push_back(
+          std::current_exception());  // of a key frame that waited before the question
     }
   }
   if (relocalized_->error) {

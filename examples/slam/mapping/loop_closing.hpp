@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -57,7 +58,8 @@ class LoopClosing {
   std::optional<MapCorrection> finish(const Map& map);
 
   /// Where a lost frame is; waits for the thread. Nothing where no place looks alike. Rethrows what
-  /// this search threw; what the thread's earlier work threw, the next poll() or finish() rethrows.
+  /// this search threw; what the thread's earlier work threw, the next calls of poll() or finish()
+  /// rethrow.
   std::optional<Eigen::Isometry3d> relocalize(const Frame& frame, const Map& map);
 
   /// Candidates since the last call.
@@ -120,8 +122,9 @@ class LoopClosing {
   std::vector<LoopEvent> events_;
   MapCopier copier_;
   std::optional<Relocalized> relocalized_;
-  std::exception_ptr kept_error_;  ///< Came up where it was not the answer to the question.
-  std::vector<bool> forgotten_;    ///< Key frames that the thread need not know any more.
+  /// Came up where they were not the answer to the question, in order.
+  std::deque<std::exception_ptr> kept_errors_;
+  std::vector<bool> forgotten_;  ///< Key frames that the thread need not know any more.
   std::size_t frames_waited_ = 0;
   std::size_t left_out_ = 0;
   bool closing_ = false;  ///< A correction is on its way.

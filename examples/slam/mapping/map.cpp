@@ -2,6 +2,7 @@
 #include "slam/mapping/map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <utility>
@@ -23,27 +24,7 @@ Eigen::Vector3d worldPoint(const Frame& frame, std::size_t key_point, const Pinh
                                                               frame.points.depth[key_point]);
 }
 
-/// Static beyond doubt: outside people, or clear of the moving person in depth.
-bool mayEnterMap(const Frame& frame, std::size_t key_point) {
-  constexpr float kClearOfPerson = 0.8f;
-  switch (frame.label[key_point]) {
-    case PointLabel::kStatic:
-      return frame.in_person[key_point] == 0;
-    case PointLabel::kSuspect:
-      return frame.weight[key_point] > kClearOfPerson;
-    case PointLabel::kDynamic:
-    case PointLabel::kUnmatched:
-      break;
-  }
-  return false;
-}
-
 }  // namespace
-
-double Map::depthInformation(double depth) const {
-  const double sigma = options_.depth_noise_floor + options_.depth_noise_quadratic * depth * depth;
-  return 1.0 / (sigma * sigma);
-}
 
 void Map::count(int point, bool found, const StaticEvidence& evidence) {
   if (MapPoint* entry = points_.find(point)) {
@@ -53,16 +34,80 @@ void Map::count(int point, bool found, const StaticEvidence& evidence) {
   }
 }
 
-void Map::fuse(const Frame& frame, std::size_t key_point, int point) {
-  MapPoint& entry = *points_.find(point);
-  const float depth = frame.points.depth[key_point];
-  if (hasDepth(depth) && depth <= options_.max_depth) {
-    const double information = depthInformation(depth);
-    entry.position =
-        (entry.information * entry.position + information * worldPoint(frame, key_point, camera_)) /
-        (entry.information + information);
-    entry.information += information;
+MapPoint Map::describe(const Frame& frame, std::size_t key_point,
+                       const Eigen::Vector3d& position) const {
+  MapPoint entry;
+  entry.position = position;
+  entry.descriptor = descriptorOf(frame, key_point);
+  entry.octave = frame.features.key_points[key_point].octave;
+  entry.distance = (frame.camera_from_world * position).norm();
+  entry.belief.log_odds = options_.belief.prior;
+  return entry;
+}
+
+bool mayEnterMap(const Frame& frame, std::size_t key_point) {
+  constexpr float kClearOfPerson = 0.8f;
+  switch (frame.label[key_point]) {
+    case PointLabel::kStatic:
+      return frame.in_person[key_point] == 0;
+    case PointLabel::kSuspect:
+      return frame.lambda[key_point] > kClearOfPerson;
+    case PointLabel::kDynamic:
+    case PointLabel::kUnmatched:
+      break;
   }
+  return false;
+}
+
+void Map::addPoint(const Eigen::Vector3d& position, const Observation& first,
+                   const Observation& second) {
+  const auto seenBy = [this](const Observation& seen) -> int& {
+    return key_frames_[static_cast<std::size_t>(seen.key_frame)].frame.map_point[seen.key_point];
+  };
+  if (seenBy(first) != kNoMapPoint || seenBy(second) != kNoMapPoint) {
+    return;
+  }
+  MapPoint entry = describe(key_frames_[static_cast<std::size_t>(first.key_frame)].frame,
+                            first.key_point, position);
+  entry.first_key_frame = std::min(first.key_frame, second.key_frame);
+  entry.last_key_frame = std::max(first.key_frame, second.key_frame);
+  entry.observations = {first, second};
+  const int point = points_.add(std::move(entry));
+  seenBy(first) = point;
+  seenBy(second) = point;
+}
+
+bool Map::mayBecomePoint(const Frame& frame, std::size_t key_point) const {
+  const float depth = frame.points.depth[key_point];
+  return frame.map_point[key_point] == kNoMapPoint && hasDepth(depth) &&
+         depth <= options_.max_depth && mayEnterMap(frame, key_point);
+}
+
+std::size_t Map::newPointsIn(const Frame& frame) const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    count += mayBecomePoint(frame, i) ? 1 : 0;
+  }
+  return count;
+}
+
+void Map::addObservation(int point, int key_frame, std::size_t key_point) {
+  MapPoint* entry = points_.find(point);
+  int& there = key_frames_[static_cast<std::size_t>(key_frame)].frame.map_point[key_point];
+  if (entry == nullptr || there != kNoMapPoint) {
+    return;
+  }
+  const bool seen = std::any_of(entry->observations.begin(), entry->observations.end(),
+                                [&](const Observation& o) { return o.key_frame == key_frame; });
+  if (!seen) {
+    there = point;
+    entry->observations.push_back({key_frame, key_point});
+    entry->last_key_frame = std::max(entry->last_key_frame, key_frame);
+  }
+}
+
+void Map::observe(const Frame& frame, std::size_t key_point, int point) {
+  MapPoint& entry = *points_.find(point);
   entry.descriptor = descriptorOf(frame, key_point);
   entry.octave = frame.features.key_points[key_point].octave;
   entry.distance = (frame.camera_from_world * entry.position).norm();
@@ -70,15 +115,9 @@ void Map::fuse(const Frame& frame, std::size_t key_point, int point) {
 }
 
 int Map::create(const Frame& frame, std::size_t key_point) {
-  MapPoint entry;
-  entry.position = worldPoint(frame, key_point, camera_);
-  entry.information = depthInformation(frame.points.depth[key_point]);
-  entry.descriptor = descriptorOf(frame, key_point);
-  entry.octave = frame.features.key_points[key_point].octave;
-  entry.distance = (frame.camera_from_world * entry.position).norm();
+  MapPoint entry = describe(frame, key_point, worldPoint(frame, key_point, camera_));
   entry.first_key_frame = static_cast<int>(key_frames_.size());
   entry.last_key_frame = entry.first_key_frame;
-  entry.belief.log_odds = options_.belief.prior;
   return points_.add(std::move(entry));
 }
 
@@ -87,13 +126,12 @@ void Map::insertKeyFrame(Frame frame) {
   KeyFrame key_frame;
   for (std::size_t i = 0; i < frame.points.size(); ++i) {
     int& point = frame.map_point[i];
-    const float depth = frame.points.depth[i];
     if (point != kNoMapPoint && points_[static_cast<std::size_t>(point)].removed) {
       point = kNoMapPoint;
     }
     if (point != kNoMapPoint) {
-      fuse(frame, i, point);
-    } else if (hasDepth(depth) && depth <= options_.max_depth && mayEnterMap(frame, i)) {
+      observe(frame, i, point);
+    } else if (mayBecomePoint(frame, i)) {
       point = create(frame, i);
     }
     if (point != kNoMapPoint) {
@@ -101,7 +139,9 @@ void Map::insertKeyFrame(Frame frame) {
       ++key_frame.map_points;
     }
   }
-  if (frame.prior && !key_frames_.empty()) {
+  // The prior tells of the way from the frame before, not from further back.
+  const bool follows = !key_frames_.empty() && key_frames_.back().frame.index + 1 == frame.index;
+  if (frame.prior && follows) {
     key_frame.motion =
         KeyFrameMotion{number - 1, frame.prior->camera_from_world * poseOf(number - 1).inverse(),
                        frame.prior->covariance.inverse()};
@@ -349,6 +389,11 @@ void Map::apply(const MapCorrection& correction) {
   for (const auto& [point, position] : correction.points) {
     if (MapPoint* entry = points_.find(point)) {
       entry->position = position;
+    }
+  }
+  for (const auto& [point, offset] : correction.depth_offsets) {
+    if (MapPoint* entry = points_.find(point)) {
+      entry->depth_offset = offset;
     }
   }
   for (const auto& [point, key_frame] : correction.outliers) {

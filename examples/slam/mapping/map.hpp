@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <hmcdyn/depth_error.hpp>
 #include <hmcdyn/types.hpp>
 
 #include "slam/mapping/map_point.hpp"
@@ -47,18 +48,21 @@ struct MapOptions {
   /// saw is lost to later adjustments, so that three (as in ORB-SLAM) cost accuracy.
   double superfluous_share = 0.9;
   std::size_t superfluous_observers = 5;
-  /// Depth noise of the sensor, sigma = floor + quadratic z^2 (m); Khoshelham, Elberink 2012.
-  double depth_noise_floor = 0.001;
-  double depth_noise_quadratic = 1.425e-3;
+  DepthErrorModel depth_error;  ///< Of the camera.
 };
 
 /// New places for key frames and points, from an optimisation over a snapshot of the map.
 struct MapCorrection {
   std::vector<std::pair<int, Eigen::Isometry3d>> key_frames;  ///< camera_from_world, by number.
   std::vector<std::pair<int, Eigen::Vector3d>> points;        ///< World (m), by number.
+  std::vector<std::pair<int, double>> depth_offsets;          ///< (1/m), by number.
   std::vector<std::pair<int, int>> outliers;  ///< Observations to drop: point, key frame.
   std::vector<std::pair<int, int>> fused;     ///< Points that are one: this one, and what stays.
 };
+
+/// Whether a key point stands still beyond doubt, so that the map may have it: outside people, or
+/// clear of the moving person in depth.
+bool mayEnterMap(const Frame& frame, std::size_t key_point);
 
 /// The sparse map: key frames and the points that they see.
 class Map {
@@ -73,9 +77,9 @@ class Map {
   /// A frame should have seen the point: whether it was found, and what the filter said of it.
   void count(int point, bool found, const StaticEvidence& evidence);
 
-  /// Makes a key frame: matched points take up its measurement, and static key points with depth
+  /// Makes a key frame: matched points take up its observation, and static key points with depth
   /// become new points. A key point in a person's box becomes one only where the filter placed it
-  /// clear of the person (weight above 0.5 in a dynamic box).
+  /// clear of the person (lambda above 0.8 in a dynamic box).
   void insertKeyFrame(Frame frame);
 
   /// Key frames that share points with a frame, most first, and the latest ones after them: at most
@@ -92,6 +96,19 @@ class Map {
   /// Key frames that share points with this one, and how many, most first.
   std::vector<std::pair<int, int>> covisible(int key_frame) const;
 
+  /// Key points of a frame that would become new points.
+  std::size_t newPointsIn(const Frame& frame) const;
+
+  /// A new point that two key frames see with key points that had none; nothing where one has.
+  void addPoint(const Eigen::Vector3d& position, const Observation& first,
+                const Observation& second);
+
+  /// A key frame sees a point with a key point that has none so far, else nothing happens.
+  void addObservation(int point, int key_frame, std::size_t key_point);
+
+  /// Makes one of two points: the key frames that saw `point` see `into`.
+  void fusePoints(int point, int into);
+
   /// Removes points that are rarely found, or no longer believed to stand still, and key frames
   /// whose points enough others see.
   void cull();
@@ -107,15 +124,16 @@ class Map {
   Eigen::Isometry3d poseOf(int key_frame) const;
 
  private:
-  void fuse(const Frame& frame, std::size_t key_point, int point);
+  bool mayBecomePoint(const Frame& frame, std::size_t key_point) const;
+  MapPoint describe(const Frame& frame, std::size_t key_point,
+                    const Eigen::Vector3d& position) const;
+  void observe(const Frame& frame, std::size_t key_point, int point);
   int create(const Frame& frame, std::size_t key_point);
   void cullPoints();
   void cullKeyFrames();
   void removePoint(int point);
   void dropObservation(int point, int key_frame);
-  void fusePoints(int point, int into);
   void removeKeyFrame(int key_frame);
-  double depthInformation(double depth) const;
   std::vector<std::pair<int, int>> sharedPoints(const std::vector<int>& map_points,
                                                 int except) const;
 

@@ -24,10 +24,12 @@ struct Observation {
 /// A point of the world, as far as it is believed to stand still.
 struct MapPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< World (m).
-  double information = 0.0;  ///< Of its depth measurements so far (1/m^2).
-  Descriptor descriptor{};   ///< Of its latest key frame.
-  int octave = 0;            ///< Pyramid level at which that key frame saw it ...
-  double distance = 0.0;     ///< ... from this distance (m).
+  /// Systematic error of its depths, which its views share (1/m): at depth z they measure
+  /// z + depth_offset z^2. The bundle adjustment finds it.
+  double depth_offset = 0.0;
+  Descriptor descriptor{};  ///< Of its latest key frame.
+  int octave = 0;           ///< Pyramid level at which that key frame saw it ...
+  double distance = 0.0;    ///< ... from this distance (m).
   int first_key_frame = 0;
   int last_key_frame = 0;  ///< Latest key frame that saw it.
   std::vector<Observation> observations;

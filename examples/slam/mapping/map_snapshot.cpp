@@ -17,9 +17,12 @@ bool isBackground(const Frame& frame, std::size_t key_point) {
          (frame.label[key_point] == PointLabel::kStatic && frame.in_person[key_point] == 0);
 }
 
-std::shared_ptr<const KeyFrameSightings> sightingsOf(const Frame& frame) {
-  return std::make_shared<const KeyFrameSightings>(
-      KeyFrameSightings{frame.points, frame.sigma, frame.weight});
+std::shared_ptr<const KeyFrameSightings> sightingsOf(const Frame& frame,
+                                                     const DepthErrorModel& depth_error) {
+  std::vector<std::size_t> all(frame.points.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return std::make_shared<const KeyFrameSightings>(KeyFrameSightings{
+      frame.points, frame.sigma, frame.weight, depthSigmas(frame, all, depth_error)});
 }
 
 /// Which key point of which key frame sees each map point, key frames in order.
@@ -71,6 +74,7 @@ LoopSnapshot::Sighting sightingOf(const MapCopy& copy, const Observers::Observer
   sighting.v = key_frame.seen->points.v[observer.key_point];
   sighting.sigma = key_frame.seen->sigma[observer.key_point];
   sighting.depth = key_frame.seen->points.depth[observer.key_point];
+  sighting.depth_sigma = key_frame.seen->depth_sigma[observer.key_point];
   sighting.weight = key_frame.seen->weight[observer.key_point];
   return sighting;
 }
@@ -81,8 +85,9 @@ void addPoints(const MapCopy& copy, const Observers& observers, LoopSnapshot& sn
     if (seen_by.size() == 0) {
       continue;  // removed, or on its way there
     }
-    snapshot.points.push_back(
-        {static_cast<int>(i), copy.point_position[i], copy.key_frames[seen_by[0].key_frame].id});
+    snapshot.points.push_back({static_cast<int>(i), copy.point_position[i],
+                               copy.key_frames[seen_by[0].key_frame].id,
+                               copy.point_depth_offset[i]});
     if (copy.point_trusted[i] != 0) {
       for (const Observers::Observer& observer : seen_by) {
         snapshot.sightings.push_back(sightingOf(copy, observer, i));
@@ -173,7 +178,7 @@ void MapCopier::remember(const Map& map) {
   seen_.resize(map.keyFrames().size());
   for (std::size_t k = known; k < seen_.size(); ++k) {
     if (!map.keyFrames()[k].removed) {
-      seen_[k] = sightingsOf(map.keyFrames()[k].frame);
+      seen_[k] = sightingsOf(map.keyFrames()[k].frame, map.options().depth_error);
     }
   }
 }
@@ -194,9 +199,11 @@ MapCopy MapCopier::copy(const Map& map, std::vector<LoopConstraint> loops) {
     }
   }
   copy.point_position.reserve(map.points().size());
+  copy.point_depth_offset.reserve(map.points().size());
   copy.point_trusted.reserve(map.points().size());
   for (const MapPoint& point : map.points()) {
     copy.point_position.push_back(point.position);
+    copy.point_depth_offset.push_back(point.depth_offset);
     copy.point_trusted.push_back(point.belief.log_odds >= map.options().belief.trust ? 1 : 0);
   }
   return copy;
@@ -222,6 +229,7 @@ MapCorrection toCorrection(const LoopSnapshot& snapshot, const LoopClosure& clos
   }
   for (const CorrectedPoint& point : closure.points) {
     correction.points.emplace_back(point.id, point.position);
+    correction.depth_offsets.emplace_back(point.id, point.depth_offset);
     if (point.fused_into != point.id) {
       correction.fused.emplace_back(point.id, point.fused_into);
     }

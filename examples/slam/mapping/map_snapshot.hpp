@@ -29,8 +29,9 @@ std::optional<LoopConstraint> survivingLoop(const Map& map, const LoopConstraint
 /// What a key frame saw, N key points. It does not change while the key frame stands.
 struct KeyFrameSightings {
   KeyPoints points;
-  std::vector<float> sigma;   ///< px
-  std::vector<float> weight;  ///< Of eq. 7.
+  std::vector<float> sigma;        ///< px
+  std::vector<float> weight;       ///< Of eq. 7.
+  std::vector<float> depth_sigma;  ///< Of the depths (m).
 };
 
 /// The parts of a map that loop closing needs, as the map has them.
@@ -45,6 +46,7 @@ struct MapCopy {
   PinholeCamera camera;
   std::vector<KeyFrameCopy> key_frames;         ///< Those that stand, in order.
   std::vector<Eigen::Vector3d> point_position;  ///< World (m), by number.
+  std::vector<double> point_depth_offset;       ///< Of its depths (1/m), by number.
   std::vector<std::uint8_t> point_trusted;      ///< 1 = believed to stand still, by number.
   std::vector<LoopConstraint> loops;
 };

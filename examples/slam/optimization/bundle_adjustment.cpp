@@ -22,10 +22,7 @@ namespace {
 using Mask = std::vector<std::uint8_t>;
 
 void checkOptions(const BundleOptions& options) {
-  requireNotNegative("options.depth_noise_floor", options.depth_noise_floor);
-  requireNotNegative("options.depth_noise_quadratic", options.depth_noise_quadratic);
-  requirePositive("options.depth_noise_floor + options.depth_noise_quadratic",
-                  options.depth_noise_floor + options.depth_noise_quadratic);
+  checkModel(options.depth_error);
   requirePositive("options.huber_two_rows", options.huber_two_rows);
   requirePositive("options.huber_three_rows", options.huber_three_rows);
   requireAtLeast("options.rounds", options.rounds, 1);
@@ -60,6 +57,13 @@ void checkProblem(const BundleProblem& problem) {
           "not finite", "finite");
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     requireRigid("poses[" + std::to_string(i) + "]", problem.poses[i].camera_from_world);
+  }
+  require(problem.depth_offsets.empty() || problem.depth_offsets.size() == problem.points.size(),
+          "depth_offsets", std::to_string(problem.depth_offsets.size()) + " values",
+          "none or one a point, " + std::to_string(problem.points.size()));
+  for (std::size_t i = 0; i < problem.depth_offsets.size(); ++i) {
+    require(std::isfinite(problem.depth_offsets[i]), "depth_offsets[" + std::to_string(i) + "]",
+            std::to_string(problem.depth_offsets[i]), "a finite offset (1/m)");
   }
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
     const BundleObservation& observation = problem.observations[i];
@@ -111,10 +115,30 @@ std::vector<Candidate> collect(const BundleProblem& problem, const BundleOptions
 /// The unknowns in the form in which Ceres moves them.
 struct State {
   std::vector<PoseVector> poses;
-  std::vector<Eigen::Vector3d> points;
+  std::vector<PointVector> points;
 };
 
-/// In front of its camera and, with `chi2`, in agreement with the state.
+/// How many rows of a measurement are of use at a point in the camera's frame: all within the test
+/// of all; else the two of the pixel within theirs; else none. Without `chi2` all in front of the
+/// camera.
+std::uint8_t usableRows(const BundleMeasurement& measurement, const BundleModel& model,
+                        const Eigen::Vector3d& in_camera, double depth_offset,
+                        const BundleOptions& options, bool chi2) {
+  if (!(in_camera.z() >= model.min_depth)) {
+    return 0;
+  }
+  const auto all = static_cast<std::uint8_t>(measurement.rows);
+  if (!chi2) {
+    return all;
+  }
+  const Eigen::Vector3d e = bundleResidual(measurement, model, in_camera, depth_offset);
+  if (measurement.rows == 3 && e.squaredNorm() <= options.chi2_three_rows) {
+    return all;
+  }
+  return e.head<2>().squaredNorm() <= options.chi2_two_rows ? 2 : 0;
+}
+
+/// Rows of each candidate that agree with the state.
 Mask choose(const std::vector<Candidate>& candidates, const State& state, const BundleModel& model,
             const BundleOptions& options, bool chi2) {
   std::vector<Eigen::Isometry3d> poses;
@@ -125,20 +149,16 @@ Mask choose(const std::vector<Candidate>& candidates, const State& state, const 
   Mask mask;
   mask.reserve(candidates.size());
   for (const Candidate& candidate : candidates) {
-    const Eigen::Vector3d p = poses[candidate.pose] * state.points[candidate.point];
-    const double limit =
-        candidate.measurement.rows == 3 ? options.chi2_three_rows : options.chi2_two_rows;
-    const bool good =
-        p.z() >= model.min_depth &&
-        (!chi2 || bundleResidual(candidate.measurement, model, p).squaredNorm() <= limit);
-    mask.push_back(good ? 1 : 0);
+    const PointVector& point = state.points[candidate.point];
+    const Eigen::Vector3d p = poses[candidate.pose] * point.head<3>();
+    mask.push_back(usableRows(candidate.measurement, model, p, point[3], options, chi2));
   }
   return mask;
 }
 
 /// What a round may move.
 struct Freedom {
-  Mask active;     ///< One entry a candidate.
+  Mask active;     ///< One entry a candidate: its rows that count.
   Mask free_pose;  ///< One entry a pose.
   std::size_t observations = 0;
   std::size_t free_poses = 0;
@@ -148,7 +168,7 @@ Freedom freedomOf(const BundleProblem& problem, const std::vector<Candidate>& ca
                   Mask active) {
   std::vector<int> rows(problem.points.size(), 0);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    rows[candidates[i].point] += active[i] != 0 ? candidates[i].measurement.rows : 0;
+    rows[candidates[i].point] += active[i];
   }
   Freedom freedom{std::move(active), Mask(problem.poses.size(), 0)};
   std::vector<int> seen(problem.poses.size(), 0);
@@ -157,8 +177,9 @@ Freedom freedomOf(const BundleProblem& problem, const std::vector<Candidate>& ca
     if (rows[candidates[i].point] < 3) {
       freedom.active[i] = 0;
     }
-    seen[candidates[i].pose] += freedom.active[i];
-    freedom.observations += freedom.active[i];
+    const int counts = freedom.active[i] != 0 ? 1 : 0;
+    seen[candidates[i].pose] += counts;
+    freedom.observations += static_cast<std::size_t>(counts);
   }
   constexpr int kFewestPoints = 3;
   bool anchored = false;
@@ -194,16 +215,16 @@ class Losses {
   Losses(const BundleOptions& options, bool robust)
       : two_(options.huber_two_rows), three_(options.huber_three_rows), robust_(robust) {}
 
-  ceres::LossFunction* of(const Candidate& candidate) {
+  ceres::LossFunction* of(int rows, double weight) {
     ceres::LossFunction* loss = nullptr;
     if (robust_) {
-      loss = candidate.measurement.rows == 3 ? &three_ : &two_;
+      loss = rows == 3 ? &three_ : &two_;
     }
-    if (candidate.weight == 1.0) {
+    if (weight == 1.0) {
       return loss;
     }
-    scaled_.push_back(std::make_unique<ceres::ScaledLoss>(loss, candidate.weight * candidate.weight,
-                                                          ceres::DO_NOT_TAKE_OWNERSHIP));
+    scaled_.push_back(
+        std::make_unique<ceres::ScaledLoss>(loss, weight * weight, ceres::DO_NOT_TAKE_OWNERSHIP));
     return scaled_.back().get();
   }
 
@@ -213,6 +234,14 @@ class Losses {
   bool robust_;
   std::vector<std::unique_ptr<ceres::LossFunction>> scaled_;
 };
+
+/// Of a point's depth offset (1/m), by the first of its observations.
+double offsetSigma(const BundleMeasurement& measurement, const DepthErrorModel& model) {
+  constexpr double kHeld = 1e-6;       // 1/m: a camera without a systematic error has no offset
+  constexpr double kUsualDepth = 2.0;  // m: of a point without any depth its offset does not matter
+  const double depth = measurement.rows == 3 ? measurement.observed.z() : kUsualDepth;
+  return std::max(kHeld, systematicDepthError(depth, model) / (depth * depth));
+}
 
 ceres::Solver::Options solverOptions(const BundleOptions& options, std::size_t free_poses) {
   ceres::Solver::Options solver;
@@ -231,6 +260,7 @@ ceres::Solver::Summary solveRound(const std::vector<Candidate>& candidates, cons
                                   const BundleModel& model, const BundleOptions& options,
                                   bool robust, State& state) {
   std::deque<BundleCost> costs;  // outlives the problem, as the losses do
+  std::deque<DepthOffsetPrior> offset_priors;
   std::deque<PoseGraphCost> motion_costs;
   Losses losses(options, robust);
   Se3Manifold manifold;
@@ -248,6 +278,7 @@ ceres::Solver::Summary solveRound(const std::vector<Candidate>& candidates, cons
   solver.linear_solver_ordering.reset(ordering);
 
   Mask known_pose(state.poses.size(), 0);
+  Mask known_point(state.points.size(), 0);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (freedom.active[i] == 0) {
       continue;
@@ -263,9 +294,17 @@ ceres::Solver::Summary solveRound(const std::vector<Candidate>& candidates, cons
         problem.SetParameterBlockConstant(pose);
       }
     }
-    costs.emplace_back(candidate.measurement, model);
-    problem.AddResidualBlock(&costs.back(), losses.of(candidate), pose, point);
-    ordering->AddElementToGroup(point, 0);
+    BundleMeasurement measurement = candidate.measurement;
+    measurement.rows = freedom.active[i];
+    costs.emplace_back(measurement, model);
+    problem.AddResidualBlock(&costs.back(), losses.of(measurement.rows, candidate.weight), pose,
+                             point);
+    if (known_point[candidate.point] == 0) {
+      known_point[candidate.point] = 1;
+      ordering->AddElementToGroup(point, 0);
+      offset_priors.emplace_back(offsetSigma(candidate.measurement, options.depth_error));
+      problem.AddResidualBlock(&offset_priors.back(), nullptr, point);
+    }
   }
   for (const BundleMotion& motion : motions) {
     const auto from = static_cast<std::size_t>(motion.from);
@@ -306,13 +345,16 @@ void adopt(BundleSolution& solution, const State& state, const Freedom& freedom,
       solution.poses[i] = toIsometry(state.poses[i]);
     }
   }
-  solution.points = state.points;
-  solution.used = freedom.observations;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    solution.inlier[candidates[i].index] = inliers[i];
+  for (std::size_t i = 0; i < state.points.size(); ++i) {
+    solution.points[i] = state.points[i].head<3>();
+    solution.depth_offsets[i] = state.points[i][3];
   }
-  solution.inliers =
-      static_cast<std::size_t>(std::count(inliers.begin(), inliers.end(), std::uint8_t{1}));
+  solution.used = freedom.observations;
+  solution.inliers = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    solution.inlier[candidates[i].index] = inliers[i] != 0 ? 1 : 0;
+    solution.inliers += inliers[i] != 0 ? 1 : 0;
+  }
 }
 
 bool isStopped(const BundleOptions& options) { return options.stop != nullptr && *options.stop; }
@@ -389,7 +431,13 @@ BundleSolution adjustBundle(const BundleProblem& problem, const BundleOptions& o
     state.poses.push_back(toPoseVector(pose.camera_from_world));
   }
   solution.points = problem.points;
-  state.points = problem.points;
+  solution.depth_offsets = problem.depth_offsets;
+  solution.depth_offsets.resize(problem.points.size(), 0.0);
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    PointVector point;
+    point << problem.points[i], solution.depth_offsets[i];
+    state.points.push_back(point);
+  }
   solution.inlier.assign(problem.observations.size(), 0);
   const std::vector<Candidate> candidates = collect(problem, options, solution.not_finite);
   if (isStopped(options)) {

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <hmcdyn/depth_error.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn::slam {
@@ -23,13 +24,14 @@ struct BundlePose {
 
 /// A point as a key frame saw it.
 struct BundleObservation {
-  int pose = 0;         ///< Index of the key frame.
-  int point = 0;        ///< Index of the point.
-  float u = 0.0f;       ///< Column (px), of the undistorted image.
-  float v = 0.0f;       ///< Row (px), of the undistorted image.
-  float sigma = 1.0f;   ///< Standard deviation of a pixel coordinate (px), > 0.
-  float depth = 0.0f;   ///< Depth (m); 0, negative or NaN = none.
-  float weight = 1.0f;  ///< lambda of eq. 7, >= 0. 0 leaves the observation out.
+  int pose = 0;              ///< Index of the key frame.
+  int point = 0;             ///< Index of the point.
+  float u = 0.0f;            ///< Column (px), of the undistorted image.
+  float v = 0.0f;            ///< Row (px), of the undistorted image.
+  float sigma = 1.0f;        ///< Standard deviation of a pixel coordinate (px), > 0.
+  float depth = 0.0f;        ///< Depth (m); 0, negative or NaN = none.
+  float weight = 1.0f;       ///< lambda of eq. 7, >= 0. 0 leaves the observation out.
+  float depth_sigma = 0.0f;  ///< Standard deviation of the depth (m), 0 = relativeDepthError().
 };
 
 /// What is known of the way from one key frame to another, besides what they see: the camera's
@@ -48,14 +50,14 @@ struct BundleProblem {
   PinholeCamera camera;
   std::vector<BundlePose> poses;
   std::vector<Eigen::Vector3d> points;  ///< World (m).
+  /// One a point (1/m): a camera at depth z measures z + offset z^2. Empty = all 0.
+  std::vector<double> depth_offsets;
   std::vector<BundleObservation> observations;
   std::vector<BundleMotion> motions;  ///< May be empty.
 };
 
 struct BundleOptions {
-  /// sigma_z(z) = depth_noise_floor + depth_noise_quadratic z^2, see PoseRefinementOptions.
-  double depth_noise_floor = 0.001;         ///< m
-  double depth_noise_quadratic = 1.425e-3;  ///< 1/m
+  DepthErrorModel depth_error;  ///< Of the camera.
 
   double huber_two_rows = std::sqrt(5.991);    ///< Huber's threshold without a depth (sigma).
   double huber_three_rows = std::sqrt(7.815);  ///< Huber's threshold with a depth (sigma).
@@ -87,8 +89,9 @@ const char* toString(BundleTermination termination) noexcept;
 struct BundleSolution {
   std::vector<Eigen::Isometry3d> poses;  ///< camera_from_world, as many as given.
   std::vector<Eigen::Vector3d> points;   ///< World (m), as many as given.
+  std::vector<double> depth_offsets;     ///< One a point (1/m), see BundleProblem.
   /// Per observation: 1 = finite, weight > 0, in front of its camera, and its unweighted squared
-  /// residual at `poses` and `points` is within 95 % of chi2.
+  /// residual at `poses` and `points` is within 95 % of chi2, with its depth or without it.
   std::vector<std::uint8_t> inlier;
   std::size_t inliers = 0;     ///< Ones in `inlier`.
   std::size_t used = 0;        ///< Observations of the last round.
@@ -108,7 +111,14 @@ struct BundleSolution {
 /// DepthRow::kDepth, plus d^T information d of each motion, d as in optimizePoseGraph(), over the
 /// poses that are not fixed and all points, by Levenberg-Marquardt with the points eliminated first
 /// (Schur complement). The first rounds are robust; after each, the observations that contradict
-/// the result are left out, and others may come back.
+/// the result are left out, and others may come back. Where only the depth contradicts, only its
+/// row is left out.
+///
+/// The depths of one point are not independent evidence: what is systematic in them
+/// (DepthErrorModel) its views share. So each point has a fourth unknown, the offset of its depths,
+/// with the systematic error as its prior: z + offset z^2 is measured at depth z, as a wrong
+/// disparity does. Views of a point thus hold each other in place as well as the noise allows, and
+/// the world's scale only as well as the systematic error does.
 ///
 /// What cannot be determined stays where it is: a point with a single observation without depth, a
 /// pose with fewer than three usable observations, what no usable observation names. An

@@ -20,24 +20,25 @@ BundleMeasurement measurementOf(const BundleObservation& observation,
     measurement.rows = 3;
     measurement.observed.z() = depth;
     measurement.inverse_sigma.z() =
-        1.0 / (options.depth_noise_floor + options.depth_noise_quadratic * depth * depth);
+        1.0 / (observation.depth_sigma > 0.0f ? static_cast<double>(observation.depth_sigma)
+                                              : relativeDepthError(depth, options.depth_error));
   }
   return measurement;
 }
 
 Eigen::Vector3d bundleResidual(const BundleMeasurement& measurement, const BundleModel& model,
-                               const Eigen::Vector3d& in_camera) {
+                               const Eigen::Vector3d& in_camera, double depth_offset) {
   const double inverse_z = 1.0 / std::max(in_camera.z(), model.min_depth);
   const Eigen::Vector3d predicted(model.camera.fx * in_camera.x() * inverse_z + model.camera.cx,
                                   model.camera.fy * in_camera.y() * inverse_z + model.camera.cy,
-                                  in_camera.z());
+                                  in_camera.z() + depth_offset * in_camera.z() * in_camera.z());
   return measurement.inverse_sigma.cwiseProduct(measurement.observed - predicted);
 }
 
 BundleCost::BundleCost(const BundleMeasurement& measurement, const BundleModel& model)
     : measurement_(measurement), model_(model) {
   set_num_residuals(measurement.rows);
-  *mutable_parameter_block_sizes() = {kPoseSize, 3};
+  *mutable_parameter_block_sizes() = {kPoseSize, kPointSize};
 }
 
 bool BundleCost::Evaluate(double const* const* parameters, double* residuals,
@@ -48,7 +49,8 @@ bool BundleCost::Evaluate(double const* const* parameters, double* residuals,
   const Eigen::Map<const Eigen::Vector3d> point(parameters[1]);
   const Eigen::Vector3d p = rotation * point + translation;
   const int rows = measurement_.rows;
-  const Eigen::Vector3d residual = bundleResidual(measurement_, model_, p);
+  const double offset = parameters[1][3];
+  const Eigen::Vector3d residual = bundleResidual(measurement_, model_, p, offset);
   std::copy_n(residual.data(), rows, residuals);
   if (jacobians == nullptr) {
     return true;
@@ -60,7 +62,7 @@ bool BundleCost::Evaluate(double const* const* parameters, double* residuals,
   Eigen::Matrix3d by_p;                                           // de/dp
   by_p << -camera.fx * inverse_z, 0.0, camera.fx * p.x() * by_z,  //
       0.0, -camera.fy * inverse_z, camera.fy * p.y() * by_z,      //
-      0.0, 0.0, -1.0;
+      0.0, 0.0, -1.0 - 2.0 * offset * p.z();
   by_p = measurement_.inverse_sigma.asDiagonal() * by_p.eval();
   if (jacobians[0] != nullptr) {
     for (int i = 0; i < rows; ++i) {
@@ -73,8 +75,20 @@ bool BundleCost::Evaluate(double const* const* parameters, double* residuals,
     }
   }
   if (jacobians[1] != nullptr) {
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> by_point = by_p * rotation;
-    std::copy_n(by_point.data(), 3 * rows, jacobians[1]);
+    Eigen::Matrix<double, 3, kPointSize, Eigen::RowMajor> by_point;
+    by_point.leftCols<3>() = by_p * rotation;
+    by_point.col(3) << 0.0, 0.0, -measurement_.inverse_sigma.z() * p.z() * p.z();
+    std::copy_n(by_point.data(), kPointSize * rows, jacobians[1]);
+  }
+  return true;
+}
+
+bool DepthOffsetPrior::Evaluate(double const* const* parameters, double* residuals,
+                                double** jacobians) const {
+  residuals[0] = inverse_sigma_ * parameters[0][3];
+  if (jacobians != nullptr && jacobians[0] != nullptr) {
+    std::fill_n(jacobians[0], 3, 0.0);
+    jacobians[0][3] = inverse_sigma_;
   }
   return true;
 }

@@ -10,6 +10,8 @@
 #include "slam/camera/calibration.hpp"
 #include "slam/detection/coco_classes.hpp"
 #include "slam/detection/detector_factory.hpp"
+#include "support/command_line.hpp"
+#include "support/time_unit_option.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -22,10 +24,22 @@ std::string join(const std::vector<std::string>& names) {
   return joined;
 }
 
-std::map<std::string, FilterRule> filterNames() {
-  std::map<std::string, FilterRule> names;
+/// "hmc" is the paper's method, "robust" ours, and the others replace its judgement alone.
+FrameFilterOptions filterOf(const std::string& name) {
+  if (name == "hmc") {
+    return FrameFilterOptions::paper();
+  }
+  FrameFilterOptions options = FrameFilterOptions::robust();
+  if (name != "robust") {
+    options.rule = *filterRuleFromString(name);
+  }
+  return options;
+}
+
+std::vector<std::string> filterNames() {
+  std::vector<std::string> names = {"robust"};
   for (const FilterRule rule : kFilterRules) {
-    names.emplace(toString(rule), rule);
+    names.emplace_back(toString(rule));
   }
   return names;
 }
@@ -78,7 +92,7 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->default_str("offline")
       ->group("Input");
   app.add_option("--speed", options.speed, "realtime: so many times as fast as it was recorded")
-      ->check(CLI::PositiveNumber)
+      ->check(support::aboveZero())
       ->capture_default_str()
       ->group("Input");
   app.add_option("--held-images", options.held_images,
@@ -89,7 +103,7 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->group("Input");
   app.add_option("--camera", options.camera,
                  "Camera: " + join(cameraPresetNames()) +
-                     ", or a calibration YAML (ours or an ORB-SLAM3 settings file)")
+                     ", or a calibration YAML (ours, or a settings file of ORB-SLAM2/3 and others)")
       ->capture_default_str()
       ->group("Input");
   app.add_option("--associations", options.association.associations,
@@ -98,7 +112,11 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->group("Input");
   app.add_option("--time-tolerance", options.association.time_tolerance,
                  "Largest time between a colour image and its depth (s)")
+      ->check(support::zeroOrMore())
       ->capture_default_str()
+      ->group("Input");
+  support::addTimeUnit(app, options.association.time_unit,
+                       "Of the time stamps in the data set's lists", true)
       ->group("Input");
   app.add_option("--groundtruth", options.groundtruth,
                  "Ground-truth trajectory (default: groundtruth.txt of the data set, if it is "
@@ -109,12 +127,36 @@ void declareInput(CLI::App& app, SlamOptions& options) {
       ->group("Input");
 }
 
+void declareCommand(CLI::App& app, CommandOptions& command) {
+  app.add_option("--command", command.line,
+                 "Program for --detector command, with its arguments: an image a frame comes on "
+                 "its standard input, boxes or a mask go back (docs/detectors.md)")
+      ->group("Detection");
+  app.add_option("--command-timeout", command.timeout,
+                 "Longest time (s) to its answer; then it is killed and started again")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group("Detection");
+  app.add_option("--command-start-timeout", command.start_timeout,
+                 "Longest time (s) to its first line, while it loads its model")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group("Detection");
+  app.add_option("--command-restarts", command.restarts,
+                 "So often it is started again after it died, hung or answered garbage")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group("Detection");
+}
+
 void declareDetection(CLI::App& app, SlamOptions& options) {
   DetectorOptions& detector = options.detector;
   app.add_option("--detector", detector.type,
                  "Where boxes come from: darknet, yolo (ONNX) and hog see people; file reads them "
-                 "(--boxes); masks reads label images in place of boxes (--masks); motion proposes "
-                 "regions that move, without a model (experimental)")
+                 "(--boxes); masks reads label images in place of boxes (--masks); command asks a "
+                 "program of yours (--command); none needs no model: --filter robust goes by its "
+                 "motion mask alone; motion proposes regions that move (older than that; "
+                 "experimental)")
       ->check(CLI::IsMember(detectorTypes()))
       ->capture_default_str()
       ->group("Detection");
@@ -132,9 +174,10 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
   app.add_option("--mask-margin", detector.mask_margin,
                  "Regions are that much larger than their masks (px): what lies at a silhouette "
                  "is on neither side")
-      ->check(CLI::NonNegativeNumber)
+      ->check(support::zeroOrMore())
       ->capture_default_str()
       ->group("Detection");
+  declareCommand(app, detector.command);
   app.add_option(
          "--input-size", detector.input_size,
          "Side of the network's input (px), a multiple of 32: an ONNX model's is fixed by its "
@@ -151,7 +194,7 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
   app.add_option("--bridge", options.bridge,
                  "A box that the detector missed is carried on by optical flow for so long (s); "
                  "0 = never")
-      ->check(CLI::NonNegativeNumber)
+      ->check(support::zeroOrMore())
       ->capture_default_str()
       ->group("Detection");
   app.add_option_function<std::string>(
@@ -161,23 +204,52 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
       ->group("Detection");
 }
 
-void declareFilter(CLI::App& app, SlamOptions& options) {
-  MotionFilterOptions& motion = options.filter;
-  FilterStageOptions& stage = motion.filter.stage;
-  app.add_option("--filter", stage.rule,
-                 "hmc (the paper), box (drop whole boxes; RS ablation), epipolar (one threshold; "
-                 "DF ablation), two_threshold (SG-SLAM), chi2 (OVD-SLAM), depth_ransac "
-                 "(YOLO-SLAM), none")
-      ->transform(CLI::CheckedTransformer(filterNames())
-                      .description("{hmc,box,epipolar,two_threshold,chi2,depth_ransac,none}"))
-      ->default_str(toString(stage.rule))
+/// First of the options: what comes after it changes single values of what it sets.
+void declareMethod(CLI::App& app, SlamOptions& options) {
+  app.add_option_function<std::string>(
+         "--filter",
+         [&options](const std::string& name) {
+           options.filter_name = name;
+           options.filter = filterOf(name);
+           options.bridge = options.filter.bridge;
+         },
+         "robust (ours), hmc (the paper and nothing else), or another's rule in place of ours: box "
+         "(drop whole boxes), dynamic_box (drop those that move), epipolar (one threshold), "
+         "two_threshold (SG-SLAM), chi2 (OVD-SLAM), depth_ransac (YOLO-SLAM), none")
+      ->check(CLI::IsMember(filterNames()))
+      ->default_str("robust")
       ->group("Filter");
-  app.add_flag("!--no-soft-weights", motion.soft_weights,
-               "Weights 0 and 1 only (the paper's OPW ablation)")
+  app.add_option(
+         "--ablation", options.ablation,
+         "robust or hmc without a part of it: rs (every point in a dynamic box is "
+         "dropped), df (one threshold in place of clusters; weights 0 and 1), opw (weights 0 "
+         "and 1 in the refinement; the map stays as it is)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Ablation>{{"none", Ablation::kNone},
+                                                                          {"rs", Ablation::kRs},
+                                                                          {"df", Ablation::kDf},
+                                                                          {"opw", Ablation::kOpw}})
+                      .description("{none,rs,df,opw}"))
+      ->default_str("none")
+      ->group("Filter");
+}
+
+void declareFilter(CLI::App& app, SlamOptions& options) {
+  FrameFilterOptions& motion = options.filter;
+  FilterStageOptions& stage = motion.expert.stage;
+  app.add_flag_callback(
+         "--no-soft-weights", [&motion] { motion.soft_weight_gate = 1.0; },
+         "Weights 0 and 1 only in the refinement, as --ablation opw")
       ->group("Filter");
   app.add_option("--baselines", motion.baselines,
                  "Ages (s) of the earlier frames that the filter compares with; 0 = the neighbour")
       ->delimiter(',')
+      ->check(support::zeroOrMore())
+      ->capture_default_str()
+      ->group("Filter");
+  app.add_option("--min-kept", motion.min_kept,
+                 "Where fewer key points would be left, the least moving of the others are kept at "
+                 "low weight; 0 = never")
+      ->check(support::zeroOrMore())
       ->capture_default_str()
       ->group("Filter");
   app.add_option("--cluster-epsilon", stage.clustering.epsilon,
@@ -205,7 +277,7 @@ void declareFilter(CLI::App& app, SlamOptions& options) {
 }
 
 void declareBelief(CLI::App& app, SlamOptions& options) {
-  DynamicFeatureFilterOptions& filter = options.filter.filter;
+  DynamicFeatureFilterOptions& filter = options.filter.expert;
   MotionBeliefOptions& belief = filter.belief;
   app.add_flag("!--no-belief", filter.use_belief,
                "Without the votes of neighbours and of earlier frames: the paper's filter alone")
@@ -243,12 +315,9 @@ void declareBelief(CLI::App& app, SlamOptions& options) {
                "Check matches of optical flow by tracking forth again, for twice the time")
       ->group("Belief");
   app.add_option(
-         "--flow-in-boxes", filter.flow_in_boxes,
-         "Key points in boxes that are followed; their neighbours vote on the others; 0 = all")
-      ->capture_default_str()
-      ->group("Belief");
-  app.add_option("--flow-background", filter.flow_background,
-                 "Key points far from every box that are followed for the camera's motion; 0 = all")
+         "--max-followed", options.filter.max_followed,
+         "Key points followed by optical flow, most of them in boxes; their neighbours vote "
+         "on the others; 0 = all")
       ->capture_default_str()
       ->group("Belief");
 }
@@ -271,6 +340,7 @@ void declareTracking(CLI::App& app, SlamOptions& options) {
       ->group("Tracking");
   app.add_option("--max-depth", options.tracker.map.max_depth,
                  "Farther points (m) do not enter the map")
+      ->check(support::aboveZero())
       ->capture_default_str()
       ->group("Tracking");
   app.add_option("--seed", options.seed, "Of every random draw; one seed, one result")
@@ -290,6 +360,17 @@ void declareOutput(CLI::App& app, SlamOptions& options) {
                "keypoints.csv: timestamp,u,v,depth,distance,cluster,label,weight,"
                "size")
       ->group("Output");
+  app.add_flag("--write-boxes", options.write_boxes,
+               "boxes.txt: what the detector found, for --detector file --boxes")
+      ->group("Output");
+  app.add_flag("--write-masks", options.write_masks,
+               "OUTPUT/masks/STAMP.png, a frame each, 8 bit, named by the colour image: 0 static, "
+               "255 moves, 128 stands but may move, 64 unknown (--filter robust)")
+      ->group("Output");
+  app.add_flag("--write-static-depth", options.write_static_depth,
+               "OUTPUT/static_depth/STAMP.png: the depth, scaled as the input's, 0 where something "
+               "moves or may move (--filter robust)")
+      ->group("Output");
   app.add_flag("!--no-dense-map", options.dense_map, "No map.ply")->group("Output");
   app.add_flag("!--no-report", options.write_report, "No report.html")->group("Output");
   app.add_flag("--quiet", options.quiet, "No progress bar")->group("Output");
@@ -298,6 +379,7 @@ void declareOutput(CLI::App& app, SlamOptions& options) {
 }  // namespace
 
 void prepareOptions(SlamOptions& options) {
+  options.filter = without(options.ablation, options.filter);
   if (options.mode == RunMode::kRealtime || options.source == SourceKind::kLive) {
     options.mode = RunMode::kRealtime;
     options.mapping.delay = 0;
@@ -306,9 +388,7 @@ void prepareOptions(SlamOptions& options) {
   options.loops.detector.place.seed = options.seed;
   options.loops.detector.verification.ransac.seed = options.seed;
   options.loops.relocalizer.ransac.seed = options.seed;
-  options.filter.filter.motion.seed = options.seed;
-  options.filter.filter.stage.depth_ransac.seed = options.seed;
-  options.tracker.seed = options.seed;
+  options.filter.seed = options.seed;
 }
 
 void declareOptions(CLI::App& app, SlamOptions& options) {
@@ -320,9 +400,11 @@ void declareOptions(CLI::App& app, SlamOptions& options) {
       "Example:\n"
       "  hmcdyn_slam --dataset rgbd_dataset_freiburg3_walking_xyz --camera tum3 \\\n"
       "    --detector darknet --model yolo-fastest-1.1.cfg --weights yolo-fastest-1.1.weights \\\n"
-      "    --filter hmc --output out\n"
-      "Exit codes: 0 done, 1 bad data, nothing tracked, a full disk or an error in a part of the\n"
-      "system (results are written all the same), 2 bad usage.");
+      "    --filter robust --output out\n"
+      "Exit codes: 0 done, 1 bad data, a full disk or an error in a part of the system (results "
+      "are\n"
+      "written all the same), 2 bad usage, 3 fewer than half of the frames have a pose.");
+  declareMethod(app, options);
   declareInput(app, options);
   declareDetection(app, options);
   declareFilter(app, options);

@@ -22,15 +22,18 @@ std::vector<cv::Point2f> dynamicPoints(const FrameOutcome& outcome) {
 
 }  // namespace
 
+cv::Mat DenseMapper::staticMaskOf(const Job& job) {
+  const cv::Mat mask =
+      job.motion.empty() ? staticMask(job.bgr.size(), job.boxes, job.dynamic_points)
+                         : staticMaskByMotion(job.motion, job.depth, job.boxes, job.dynamic_points);
+  return job.labels.empty() ? mask : withoutLabels(mask, job.labels);
+}
+
 DenseMapper::DenseMapper()
     : dense_(std::make_shared<DenseMap>()),
       worker_(
           [dense = dense_](const Job& job) {
-            cv::Mat mask = staticMask(job.bgr.size(), job.boxes, job.dynamic_points);
-            if (!job.labels.empty()) {
-              mask = withoutLabels(mask, job.labels);
-            }
-            dense->add(job.key_frame, thinKeyFrame(job.bgr, job.depth, mask));
+            dense->add(job.key_frame, thinKeyFrame(job.bgr, job.depth, staticMaskOf(job)));
             return std::monostate{};
           },
           kQueue) {}
@@ -44,8 +47,12 @@ void DenseMapper::add(std::size_t key_frame, const FrameOutcome& outcome) {
   if (outcome.mask.empty()) {
     boxes = boxesToLeaveOut(outcome.boxes, is_dynamic);
   }
+  cv::Mat motion;
+  if (outcome.motion != nullptr) {
+    motion = outcome.motion->label.clone();  // the filter writes the next frame's there
+  }
   worker_.submit({key_frame, outcome.image.bgr, outcome.image.depth, std::move(boxes),
-                  outcome.mask.labels, dynamicPoints(outcome)});
+                  outcome.mask.labels, std::move(motion), dynamicPoints(outcome)});
   while (worker_.tryTake()) {
   }
 }

@@ -38,9 +38,12 @@ class DenseMapper {
     cv::Mat bgr;
     cv::Mat depth;
     std::vector<DetectionBox> boxes;
-    cv::Mat labels;  ///< In place of the boxes, or empty.
+    cv::Mat labels;  ///< Of the detector, in place of the boxes; or empty.
+    cv::Mat motion;  ///< Labels of the motion mask, in place of whole boxes; empty = none.
     std::vector<cv::Point2f> dynamic_points;
   };
+
+  static cv::Mat staticMaskOf(const Job& job);
 
   std::shared_ptr<DenseMap> dense_;  ///< The thread's, until the queue is empty.
   Worker<Job, std::monostate> worker_;

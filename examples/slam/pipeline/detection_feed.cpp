@@ -17,7 +17,7 @@ namespace {
 std::optional<BoxCarrier> makeCarrier(const SlamOptions& options, const std::string& type) {
   BoxCarrierOptions carrier;
   carrier.max_bridge = options.bridge;
-  if (type == "file" || type == "masks") {
+  if (type == "file" || type == "masks" || type == "command") {
     carrier.duplicate_overlap = 1.0f;  // they are taken as they are
   }
   if (type == "masks") {
@@ -44,6 +44,10 @@ std::optional<MaskFolder> openMasks(const DetectorOptions& options, const std::s
   return type == "masks" ? std::optional<MaskFolder>(std::in_place, options.masks, rectifier.size(),
                                                      options.time_tolerance)
                          : std::nullopt;
+}
+
+CarriedFrame asCarried(const RgbdFrame& frame) {
+  return {frame.index, frame.timestamp, frame.gray, frame.depth};
 }
 
 }  // namespace
@@ -106,6 +110,7 @@ FrameBoxes DetectionFeed::maskOf(const PreparedFrame& frame) {
     result.detected = true;
     ++mask_counts_.detected;
     seen = FrameDetection{frame.raw.index, result.boxes};
+    result.found = linesOf(frame.raw.timestamp, result.boxes);
   } catch (const std::runtime_error& error) {
     if (++mask_counts_.failed == 1) {
       report_(
@@ -114,7 +119,7 @@ FrameBoxes DetectionFeed::maskOf(const PreparedFrame& frame) {
                       frame.raw.index, error.what()));
     }
   }
-  std::vector<DetectionBox> carried = carrier_->update(frame.image, seen);
+  std::vector<DetectionBox> carried = carrier_->update(asCarried(frame.image), seen);
   if (!seen) {
     result.boxes = std::move(carried);
   }
@@ -130,6 +135,7 @@ FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
   if (regions_) {
     const StageTimer timer;
     result.boxes = regions_->update(frame.image);
+    result.found = linesOf(frame.raw.timestamp, result.boxes);
     result.detected = true;
     result.carry_time = timer.elapsed("boxes");
     return result;
@@ -141,23 +147,43 @@ FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
     detection = thread_.take();
   }
   std::optional<FrameDetection> said;
+  FrameMask mask;  // of this very frame
   if (detection) {
     result.detected = !detection->failed && detection->frame == frame.raw.index;
     result.detect_wall_ms = detection->wall_ms;
     result.detect_cpu_ms = detection->cpu_ms;
+    if (!detection->labels.empty()) {
+      mask = makeFrameMask(detection->labels, mask_margin_);
+      detection->boxes = boundingBoxes(mask.labels, mask.regions);
+    }
     if (!detection->failed) {
       said = FrameDetection{detection->frame, rectified(std::move(detection->boxes))};
+      result.found = linesOf(detection->timestamp, said->boxes);
     }
   }
   const StageTimer timer;
   if (carrier_) {
-    result.boxes = carrier_->update(frame.image, said);
+    result.boxes = carrier_->update(asCarried(frame.image), said);
     result.bridged = carrier_->bridged();
   } else if (said) {
     result.boxes = std::move(said->boxes);
   }
+  if (result.detected && !mask.empty()) {  // a late one gives boxes to carry on, like a missing one
+    result.boxes = boundingBoxes(mask.labels, mask.regions);
+    result.mask = std::move(mask);
+  }
   result.carry_time = timer.elapsed("boxes");
   return result;
+}
+
+std::string DetectionFeed::linesOf(double timestamp, const std::vector<DetectionBox>& boxes) const {
+  std::string lines;
+  for (const DetectionBox& seen : boxes) {
+    const DetectionBox box = rectifier_.rawBox(seen);
+    lines += fmt::format("{} {} {} {} {} {} {}\n", timestamp, box.class_id, box.x_min, box.y_min,
+                         box.x_max, box.y_max, box.score);
+  }
+  return lines;
 }
 
 }  // namespace hmcdyn::slam

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <hmcdyn/box_carrier.hpp>
+
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
-#include "slam/detection/box_carrier.hpp"
 #include "slam/detection/detection_thread.hpp"
 #include "slam/detection/detector.hpp"
 #include "slam/detection/frame_mask.hpp"
@@ -30,9 +31,11 @@ struct PreparedFrame {
 struct FrameBoxes {
   std::vector<DetectionBox> boxes;  ///< In the undistorted image.
   FrameMask mask;                   ///< To the pixel what the boxes are around, where it is known.
-  bool detected = false;            ///< By the detector in this very frame; else carried on.
-  std::size_t bridged = 0;          ///< Boxes that the newest detection missed.
-  double detect_wall_ms = 0.0;      ///< Of the detector's thread; 0 without an answer.
+  /// What the detector has just said, of this frame or of an earlier one, as lines of a box file.
+  std::string found;
+  bool detected = false;        ///< By the detector in this very frame; else carried on.
+  std::size_t bridged = 0;      ///< Boxes that the newest detection missed.
+  double detect_wall_ms = 0.0;  ///< Of the detector's thread; 0 without an answer.
   double detect_cpu_ms = 0.0;
   StageTime carry_time;  ///< What carrying boxes on, or finding regions, took.
 };
@@ -71,6 +74,8 @@ class DetectionFeed {
   static TypedDetector choose(const SlamOptions& options, std::unique_ptr<ObjectDetector> own);
 
   std::vector<DetectionBox> rectified(std::vector<DetectionBox> boxes) const;
+  /// Boxes as readBoxFile() takes them: in the image as the camera saw it.
+  std::string linesOf(double timestamp, const std::vector<DetectionBox>& boxes) const;
   FrameBoxes maskOf(const PreparedFrame& frame);
 
   bool realtime_;

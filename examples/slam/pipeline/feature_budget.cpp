@@ -6,29 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-namespace hmcdyn::slam {
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
-double coveredShare(Span<const DetectionBox> boxes, const cv::Size& image) {
-  // On a raster of 8 px: exact enough, and boxes may overlap in any way.
-  constexpr int kRaster = 8;
-  const int columns = (image.width + kRaster - 1) / kRaster;
-  const int rows = (image.height + kRaster - 1) / kRaster;
-  int covered = 0;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const int u = column * kRaster + kRaster / 2;
-      const int v = row * kRaster + kRaster / 2;
-      covered += std::any_of(boxes.begin(), boxes.end(),
-                             [&](const DetectionBox& box) {
-                               return box.contains(static_cast<float>(u), static_cast<float>(v));
-                             })
-                     ? 1
-                     : 0;
-    }
-  }
-  return columns * rows == 0 ? 0.0
-                             : static_cast<double>(covered) / static_cast<double>(columns * rows);
-}
+namespace hmcdyn::slam {
 
 int featureBudget(int base, double covered_share, double max_factor) {
   if (base <= 0 || !(max_factor >= 1.0)) {
@@ -38,6 +19,23 @@ int featureBudget(int base, double covered_share, double max_factor) {
   }
   const double outside = std::clamp(1.0 - covered_share, 1.0 / max_factor, 1.0);
   return static_cast<int>(std::lround(base / outside));
+}
+
+cv::Mat cornersOfRoom(const cv::Mat& corners, const MotionMask& before) {
+  constexpr float kLeastShare = 0.2f;
+  constexpr int kRim = 6;  // px that a thing moves from frame to frame
+  if (before.moving_share < kLeastShare ||
+      (!corners.empty() && corners.size() != before.label.size())) {
+    return corners;
+  }
+  cv::Mat room;
+  cv::erode(before.label == static_cast<int>(MaskLabel::kMoving), room,
+            cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * kRim + 1, 2 * kRim + 1)));
+  cv::bitwise_not(room, room);
+  if (!corners.empty()) {
+    cv::bitwise_and(room, corners, room);
+  }
+  return room;
 }
 
 }  // namespace hmcdyn::slam

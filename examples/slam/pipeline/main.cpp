@@ -23,6 +23,10 @@ void printSummary(const nlohmann::json& summary, const std::filesystem::path& ou
   const nlohmann::json& counts = summary.at("counts");
   std::cout << "tracked " << counts.at("frames_tracked") << " of " << counts.at("frames_in")
             << " frames";
+  if (counts.at("color_images_without_depth_image") > 0) {
+    std::cout << " (" << counts.at("color_images_without_depth_image")
+              << " more colour images have no depth image)";
+  }
   if (counts.at("frames_dropped") > 0) {
     std::cout << " (" << counts.at("frames_dropped") << " dropped as late)";
   }

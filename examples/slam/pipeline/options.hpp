@@ -6,10 +6,11 @@
 #include <filesystem>
 #include <string>
 
+#include <hmcdyn/frame_filter.hpp>
+
 #include "slam/dataset/tum_dataset.hpp"
 #include "slam/detection/detector_options.hpp"
 #include "slam/features/orb_extractor.hpp"
-#include "slam/filtering/motion_filter.hpp"
 #include "slam/mapping/local_mapper.hpp"
 #include "slam/mapping/loop_closing.hpp"
 #include "slam/source/depth_camera.hpp"
@@ -25,6 +26,10 @@ enum class RunMode : std::uint8_t {
 
 /// Where frames come from.
 enum class SourceKind : std::uint8_t { kFolder, kLive };
+
+/// Folders of a run's output for SlamOptions::write_masks and write_static_depth.
+inline constexpr const char* kMaskFolder = "masks";
+inline constexpr const char* kStaticDepthFolder = "static_depth";
 
 /// Everything that a run depends on.
 struct SlamOptions {
@@ -42,7 +47,9 @@ struct SlamOptions {
   OrbOptions features;
   /// Up to so many times as many key points where boxes cover much of the image; 1 = never.
   double max_feature_factor = 2.5;
-  MotionFilterOptions filter;
+  FrameFilterOptions filter;
+  std::string filter_name = "robust";  ///< As --filter has it.
+  Ablation ablation = Ablation::kNone;
   TrackerOptions tracker;
   LocalMapperOptions mapping;
   LoopClosingOptions loops;
@@ -52,6 +59,9 @@ struct SlamOptions {
   std::size_t max_frames = 0;         ///< 0 = all.
   bool annotate = false;              ///< A picture a frame.
   bool write_keypoints = false;       ///< keypoints.csv.
+  bool write_boxes = false;           ///< boxes.txt.
+  bool write_masks = false;           ///< A motion mask a frame, in masks/.
+  bool write_static_depth = false;    ///< The depth of what does not move, in static_depth/.
   bool dense_map = true;              ///< map.ply.
   bool write_report = true;           ///< report.html.
   bool quiet = false;                 ///< No progress bar.

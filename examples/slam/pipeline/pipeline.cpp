@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "slam/pipeline/feature_budget.hpp"
+#include "slam/pipeline/filter_frame.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -13,6 +14,12 @@ namespace {
 constexpr const char* kLocalMapping = "local mapping";
 constexpr const char* kLoopClosing = "loop closing";
 constexpr const char* kGoesOn = "the run goes on without its result";
+
+FrameFilterOptions filterOptions(FrameFilterOptions options, const PinholeCamera& camera) {
+  options.bridge = 0.0;  // DetectionFeed bridges: it knows late detections, too
+  options.camera = camera;
+  return options;
+}
 
 }  // namespace
 
@@ -33,7 +40,7 @@ Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibrat
       corner_mask_(std::move(corner_mask)),
       extractor_(options.features),
       max_feature_factor_(options.max_feature_factor),
-      filter_(options.filter),
+      filter_(filterOptions(options.filter, calibration.pinhole)),
       tracker_(calibration.pinhole, options.tracker),
       mapper_(options.mapping),
       loops_(calibration.pinhole, options.loops) {}
@@ -41,9 +48,10 @@ Pipeline::Pipeline(const SlamOptions& options, const CameraCalibration& calibrat
 Frame Pipeline::extract(const RgbdFrame& image, double covered_share) {
   const int wanted =
       featureBudget(extractor_.options().features, covered_share, max_feature_factor_);
-  return makeFrame(image.index, image.timestamp,
-                   extractor_.extract(image.gray, corner_mask_, wanted), image.depth,
-                   extractor_.options().scale_factor);
+  const MotionMask* before = filter_.mask();
+  const cv::Mat corners = before == nullptr ? corner_mask_ : cornersOfRoom(corner_mask_, *before);
+  return makeFrame(image.index, image.timestamp, extractor_.extract(image.gray, corners, wanted),
+                   image.depth, extractor_.options().scale_factor);
 }
 
 std::optional<Eigen::Isometry3d> Pipeline::relocalize(const Frame& lost) {
@@ -89,9 +97,13 @@ FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox>
   const double covered = outcome.mask.empty() ? coveredShare(outcome.boxes, image.gray.size())
                                               : coveredShare(outcome.mask);
   Frame frame = times.measure("features", [&] { return extract(image, covered); });
-  outcome.filtered = times.measure("filter", [&] {
-    return filter_.filter(image.gray, image.depth, outcome.boxes, frame, outcome.mask);
+  FrameFilterResult filtered = times.measure("filter", [&] {
+    return filterFrame(image, outcome.boxes, outcome.mask, tracker_, filter_, frame);
   });
+  outcome.motion = filter_.mask();
+  outcome.filter_status = filtered.status;
+  outcome.kept_for_number = filtered.kept_for_number;
+  outcome.filtered = std::move(filtered.details);
   outcome.points = frame.points;
   outcome.weight = frame.weight;
   outcome.size.reserve(frame.points.size());
@@ -104,9 +116,13 @@ FrameOutcome Pipeline::process(const RgbdFrame& image, std::vector<DetectionBox>
   if (outcome.tracking.failure == TrackingFailure::kNone) {
     log_.add(image.timestamp, outcome.tracking.camera_from_world, outcome.tracking.reference,
              tracker_.map());
+    filter_.setPose(image.timestamp, outcome.tracking.camera_from_world);
   }
   outcome.map_moved =
       times.measure("map", [&] { return exchangeWithThreads(outcome.tracking.new_key_frame); });
+  if (outcome.map_moved && tracker_.lastFrame() != nullptr) {
+    filter_.setPose(tracker_.lastFrame()->timestamp, tracker_.lastFrame()->camera_from_world);
+  }
   return outcome;
 }
 

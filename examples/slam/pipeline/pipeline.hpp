@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
-#include <hmcdyn/dynamic_feature_filter.hpp>
+#include <hmcdyn/frame_filter.hpp>
 
 #include "slam/camera/calibration.hpp"
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
 #include "slam/detection/frame_mask.hpp"
 #include "slam/features/orb_extractor.hpp"
-#include "slam/filtering/motion_filter.hpp"
 #include "slam/mapping/local_mapper.hpp"
 #include "slam/mapping/loop_closing.hpp"
 #include "slam/output/stage_times.hpp"
@@ -33,9 +32,14 @@ struct FrameOutcome {
   std::vector<float> size;              ///< N diameters of the described patches (px).
   std::vector<float> weight;            ///< N weights as the tracker used them.
   DynamicFeatureFilterResult filtered;  ///< What the filter decided about them.
-  TrackingResult tracking;              ///< Where the camera is.
-  bool map_moved = false;               ///< A correction was taken up after this frame.
-  StageTimes times;                     ///< What it took.
+  /// What moves, a pixel each; null = the filter made no mask. The filter's: it is another frame's
+  /// once the next one is processed.
+  const MotionMask* motion = nullptr;
+  FrameFilterStatus filter_status = FrameFilterStatus::kFiltered;  ///< What that is worth.
+  std::size_t kept_for_number = 0;  ///< Points that were kept since too few would be left.
+  TrackingResult tracking;          ///< Where the camera is.
+  bool map_moved = false;           ///< A correction was taken up after this frame.
+  StageTimes times;                 ///< What it took.
 };
 
 /// The tracking thread's work on a frame, in the order of its data: features, filter, tracking; and
@@ -75,7 +79,7 @@ class Pipeline {
   cv::Mat corner_mask_;
   OrbExtractor extractor_;
   double max_feature_factor_;
-  MotionFilter filter_;
+  FrameFilter filter_;
   Tracker tracker_;
   LocalMapper mapper_;
   LoopClosing loops_;

@@ -10,9 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "slam/camera/calibration.hpp"
 #include "slam/pipeline/dense_mapper.hpp"
 #include "slam/pipeline/detection_feed.hpp"
+#include "slam/pipeline/input_check.hpp"
+#include "slam/pipeline/mask_writer.hpp"
 #include "slam/pipeline/pipeline.hpp"
 #include "slam/pipeline/run_writer.hpp"
 #include "slam/pipeline/summary.hpp"
@@ -28,32 +29,20 @@ namespace {
 
 void warn(const std::string& message) { spdlog::warn("{}", message); }
 
-std::unique_ptr<FrameSource> makeSource(const SlamOptions& options,
-                                        const CameraCalibration& calibration) {
+std::unique_ptr<FrameSource> makeSource(const SlamOptions& options, const RunInput& input,
+                                        const std::function<bool()>& stop) {
   if (options.source == SourceKind::kLive) {
-    return std::make_unique<LiveSource>(openDepthCamera(options.live), calibration, warn);
-  }
-  if (options.dataset.empty()) {
-    throw std::invalid_argument("--dataset is missing; expected a folder in TUM format");
+    return std::make_unique<LiveSource>(openDepthCamera(options.live), input.calibration, warn);
   }
   auto folder =
-      std::make_unique<TumFolderSource>(options.dataset, options.association, calibration, warn);
+      std::make_unique<TumFolderSource>(input.list, options.dataset, input.calibration, warn);
   folder->limit(options.max_frames);
   if (options.mode == RunMode::kRealtime) {
     auto ahead = std::make_unique<ReadAhead>(std::move(folder), options.held_images + 1);
     return std::make_unique<RealtimePacer>(std::move(ahead), makeWallClock(), options.speed,
-                                           options.held_images);
+                                           options.held_images, stop, warn);
   }
   return folder;
-}
-
-/// The data set's own ground truth, where the user named none.
-std::filesystem::path groundtruthFile(const SlamOptions& options) {
-  if (!options.groundtruth.empty()) {
-    return options.groundtruth;
-  }
-  const std::filesystem::path own = options.dataset / "groundtruth.txt";
-  return !options.dataset.empty() && std::filesystem::exists(own) ? own : std::filesystem::path{};
 }
 
 /// Takes frames from their source and keeps the detector busy one frame ahead; in real time the
@@ -134,21 +123,26 @@ constexpr const char* kMapLacksOne = "the dense map lacks a key frame";
 
 /// All parts of a run.
 struct Run {
-  Run(const SlamOptions& run_options, const CameraCalibration& calibration,
+  Run(const SlamOptions& run_options, RunInput run_input, const std::function<bool()>& stop,
       std::unique_ptr<ObjectDetector> detector)
       : options(run_options),
-        source(makeSource(options, calibration)),
-        rectifier(calibration),
+        input(std::move(run_input)),
+        source(makeSource(options, input, stop)),
+        rectifier(input.calibration),
         detections(options, rectifier, warn, std::move(detector)),
         errors([](const std::string& message) { spdlog::error("{}", message); }),
-        pipeline(options, calibration, cornerMask(rectifier), errors),
+        pipeline(options, input.calibration, cornerMask(rectifier), errors),
         writer(options) {
     if (options.dense_map) {
       dense.emplace();
     }
+    if (options.write_masks || options.write_static_depth) {
+      masks.emplace(options, input.calibration.depth_factor);
+    }
   }
 
   const SlamOptions& options;
+  RunInput input;
   std::unique_ptr<FrameSource> source;
   Rectifier rectifier;
   DetectionFeed detections;
@@ -156,6 +150,7 @@ struct Run {
   Pipeline pipeline;
   std::optional<DenseMapper> dense;
   RunWriter writer;
+  std::optional<MaskWriter> masks;
   WriteAttempts writing;
   RunCounts counts;
   StageHistory times;
@@ -165,9 +160,16 @@ struct Run {
 bool doFrame(Run& run, const PreparedFrame& frame) {
   FrameBoxes boxes = run.detections.boxesOf(frame);
   run.counts.boxes_bridged += boxes.bridged;
+  if (!run.writing.attempt([&] { run.writer.writeBoxes(boxes.found); })) {
+    return false;
+  }
   const FrameOutcome outcome = trackFrame(frame, std::move(boxes), run.pipeline);
   run.counts.add(outcome.filtered);
+  run.counts.frames_starved += outcome.kept_for_number > 0 ? 1 : 0;
   run.counts.add(outcome.image.timestamp, outcome.tracking);
+  if (outcome.motion != nullptr) {
+    ++run.counts.motion_masks[toString(outcome.motion->state)];
+  }
   run.times.add(outcome.times);
   if (const std::optional<double> lag = run.source->secondsSinceDue()) {
     run.counts.latency_ms.push_back(1e3 * *lag);
@@ -176,8 +178,12 @@ bool doFrame(Run& run, const PreparedFrame& frame) {
     run.errors.attempt(kDenseMapping, kMapLacksOne,
                        [&] { run.dense->add(run.pipeline.map().keyFrames().size() - 1, outcome); });
   }
-  return run.writing.attempt(
-      [&] { run.writer.write(outcome, run.pipeline.map(), run.pipeline.loops()); });
+  return run.writing.attempt([&] {
+    run.writer.write(outcome, run.pipeline.map(), run.pipeline.loops());
+    if (run.masks) {
+      run.masks->add(outcome);
+    }
+  });
 }
 
 void doFrames(Run& run, const std::function<bool()>& stop) {
@@ -188,6 +194,9 @@ void doFrames(Run& run, const std::function<bool()>& stop) {
   const auto next = [&] {
     run.counts.stopped = stop && stop();
     const std::optional<PreparedFrame> frame = run.counts.stopped ? std::nullopt : feed.next();
+    if (!run.counts.stopped && !frame && stop && stop()) {  // in the middle of a wait for a frame
+      run.counts.stopped = run.source->counts().taken_up < run.source->expectedFrames().value_or(0);
+    }
     goes_on = frame && doFrame(run, *frame);
   };
   while (goes_on) {
@@ -220,21 +229,35 @@ void finishDenseMap(Run& run) {
 nlohmann::json finish(Run& run) {
   const SlamOptions& options = run.options;
   run.pipeline.finish();
+  if (run.masks) {
+    while (!run.writing.attempt([&] { run.masks->finish(); })) {
+    }
+  }
   run.writer.releaseReserve();
   run.writing.attempt([&] { run.writer.writeLoops(run.pipeline.map(), run.pipeline.loops()); });
   run.writing.attempt([&] { run.writer.finish(run.pipeline.trajectory(), run.pipeline.map()); });
   if (run.dense) {
     finishDenseMap(run);
   }
-  for (const std::string& warning : filterWarnings(run.counts, options)) {
+  std::vector<std::string> warnings = filterWarnings(run.counts, options);
+  if (const std::string reason = whyFewPoses(run.counts); !reason.empty()) {
+    warnings.push_back(reason);
+  }
+  for (const std::string& warning : warnings) {
     warn(warning);
   }
-  const std::filesystem::path groundtruth = groundtruthFile(options);
+  const std::filesystem::path& groundtruth = run.input.groundtruth;
+  run.counts.notes = run.input.notes;
   run.counts.write_failures = run.writing.failures();
   run.counts.errors = run.errors.all();
   nlohmann::json summary =
       summarizeRun(options, {run.source->name(), run.detections.detectorName()}, run.counts,
                    run.pipeline, run.times, groundtruth);
+  if (summary.contains("evaluation") && summary.at("evaluation").contains("error")) {
+    const std::string why = "no ATE: " + summary.at("evaluation").at("error").get<std::string>();
+    warn(why);
+    summary["warnings"].push_back(why);
+  }
   run.writing.attempt([&] { run.writer.writeSummary(summary); });
   if (!run.writing.attempt([&] { run.writer.writeReport(summary, groundtruth, options); })) {
     summary["counts"]["write_failures"] = run.writing.failures();
@@ -252,7 +275,12 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop,
   if (detector) {
     options.detector.type = "own";
   }
-  Run run(options, loadCamera(options.camera), std::move(detector));
+  RunInput input = checkInput(options, detector != nullptr);
+  for (const std::string& note : input.notes) {
+    warn(note);
+  }
+  Run run(options, std::move(input), stop, std::move(detector));
+  run.counts.box_file = run.input.boxes;
   doFrames(run, stop);
   return finish(run);
 }

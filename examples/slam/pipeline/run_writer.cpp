@@ -14,6 +14,7 @@
 #include "evaluate/trajectory.hpp"
 #include "slam/detection/coco_classes.hpp"
 #include "slam/output/annotate.hpp"
+#include "slam/pipeline/input_check.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -52,9 +53,11 @@ std::vector<ReportFrame> evaluated(std::vector<ReportFrame> frames,
     return frames;
   }
   try {
+    const evaluate::Trajectory tracked = evaluate::readTrajectory(trajectory);
+    const evaluate::NotedTrajectory truth = evaluate::readTrajectoryFor(
+        groundtruth, tracked.front().timestamp, tracked.back().timestamp);
     return withGroundTruth(std::move(frames),
-                           evaluate::absoluteTrajectoryError(evaluate::readTrajectory(groundtruth),
-                                                             evaluate::readTrajectory(trajectory)));
+                           evaluate::absoluteTrajectoryError(truth.poses, tracked));
   } catch (const std::exception&) {
     return frames;  // summary.json says why there is no error
   }
@@ -76,6 +79,10 @@ RunWriter::RunWriter(const SlamOptions& options)
       reports_(options.write_report) {
   if (options.write_keypoints) {
     key_points_.emplace(folder_.keyPoints());
+  }
+  if (options.write_boxes) {
+    boxes_.emplace(options.output / "boxes.txt");
+    boxes_->append("# timestamp class x_min y_min x_max y_max score\n");
   }
   if (options.annotate) {
     pictures_ = options.output / "frames";
@@ -102,6 +109,12 @@ void RunWriter::write(const FrameOutcome& outcome, const Map& map, LoopClosing& 
   }
 }
 
+void RunWriter::writeBoxes(const std::string& lines) {
+  if (boxes_ && !lines.empty()) {
+    boxes_->append(lines);
+  }
+}
+
 void RunWriter::writeLoops(const Map& map, LoopClosing& loops) {
   bool closed = false;
   for (const LoopEvent& event : loops.takeEvents()) {
@@ -124,7 +137,7 @@ void RunWriter::writeKeyPoints(const FrameOutcome& outcome) {
 }
 
 void RunWriter::writePicture(const FrameOutcome& outcome) {
-  const std::size_t number = report_frames_.size();
+  const std::size_t number = report_frames_.added();
   const bool for_report = reports_ && reel_.wants(number);
   if (pictures_.empty() && !for_report) {
     return;
@@ -163,7 +176,7 @@ void RunWriter::record(const FrameOutcome& outcome) {
     frame.failure = toString(outcome.tracking.failure);
   }
   frame.key_frame = outcome.tracking.new_key_frame;
-  report_frames_.push_back(std::move(frame));
+  report_frames_.add(std::move(frame));
 }
 
 void RunWriter::rewriteKeyFrames(const Map& map) {
@@ -181,7 +194,7 @@ void RunWriter::finish(const std::vector<StampedPose>& poses, const Map& map) {
   for (const StampedPose& pose : poses) {
     position[pose.timestamp] = pose.camera_from_world.inverse().translation();
   }
-  for (ReportFrame& frame : report_frames_) {
+  for (ReportFrame& frame : report_frames_.frames()) {
     const auto found = position.find(frame.timestamp);
     if (found != position.end()) {
       frame.position = found->second;
@@ -199,10 +212,11 @@ void RunWriter::writeReport(const nlohmann::json& summary, const std::filesystem
   ReportInput input;
   input.title = options.dataset.filename().string();
   input.stages = frameStages();
+  input.frames_in_all = report_frames_.added();
   input.frames =
-      evaluated(std::move(report_frames_), groundtruth, folder_.path() / "trajectory.txt");
+      evaluated(std::move(report_frames_.frames()), groundtruth, folder_.path() / "trajectory.txt");
   input.loops = std::move(loop_rows_);
-  input.pictures = choosePictures(reel_.pictures(), input.frames);
+  input.pictures = choosePictures(byPlace(reel_.pictures(), input.frames), input.frames);
   input.summary = summary;
   slam::writeReport(folder_.path() / "report.html", input);
 }

@@ -8,11 +8,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "slam/output/append_file.hpp"
 #include "slam/output/map_files.hpp"
 #include "slam/output/run_folder.hpp"
 #include "slam/pipeline/detection_feed.hpp"
 #include "slam/pipeline/options.hpp"
 #include "slam/pipeline/pipeline.hpp"
+#include "slam/report/frame_history.hpp"
 #include "slam/report/pictures.hpp"
 #include "slam/report/report.hpp"
 
@@ -29,6 +31,10 @@ class RunWriter {
 
   /// @throws std::runtime_error naming the file where one cannot be written.
   void write(const FrameOutcome& outcome, const Map& map, LoopClosing& loops);
+
+  /// Appends to boxes.txt, where it is asked for. @param lines FrameBoxes::found.
+  /// @throws std::runtime_error naming the file where it cannot be written.
+  void writeBoxes(const std::string& lines);
 
   /// Makes room for what follows where the disk is full.
   void releaseReserve() { folder_.releaseReserve(); }
@@ -58,10 +64,11 @@ class RunWriter {
   KeyFramesWriter key_frames_;
   LoopsWriter loops_;
   std::optional<KeyPointsWriter> key_points_;
+  std::optional<AppendFile> boxes_;
   std::filesystem::path pictures_;  ///< Empty = no picture a frame.
   std::vector<std::string> class_names_;
   bool reports_;
-  std::vector<ReportFrame> report_frames_;
+  FrameHistory report_frames_;
   std::vector<LoopRow> loop_rows_;
   PictureReel reel_;
 };

@@ -15,6 +15,7 @@
 #include "evaluate/absolute_trajectory_error.hpp"
 #include "evaluate/relative_pose_error.hpp"
 #include "evaluate/trajectory.hpp"
+#include "slam/pipeline/input_check.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -47,6 +48,7 @@ void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
   const FrameDecision& frame = filtered.stage.frame;
   frames_with_boxes += frame.boxes > 0 ? 1 : 0;
   frames_with_distances += frame.measured > 0 ? 1 : 0;
+  frames_camera_unknown += filtered.camera_unknown ? 1 : 0;
   boxes += frame.boxes;
   dynamic_boxes += frame.dynamic_boxes;
   key_points += frame.points;
@@ -56,6 +58,7 @@ void RunCounts::add(const DynamicFeatureFilterResult& filtered) {
   for (const EarlierFrameReport& report : filtered.earlier) {
     ++models[hmcdyn::toString(report.motion.model.kind)];
     models_by_memory += isByMemory(report.motion.source) ? 1 : 0;
+    models_by_prediction += report.motion.source == MatchSource::kPrediction ? 1 : 0;
     ++fundamental[hmcdyn::toString(report.motion.verdict)];
   }
 }
@@ -74,18 +77,63 @@ void RunCounts::add(double timestamp, const TrackingResult& tracked) {
   relocalized += tracked.relocalized ? 1 : 0;
 }
 
+namespace {
+
+/// Which rule left out a file's boxes, or that the detector found none.
+std::string whyNoBox(const RunCounts& counts) {
+  const BoxCounts& boxes = counts.box_file;
+  if (boxes.in_file == 0 || boxes.kept > 0) {
+    return "the detector found no box in any frame";
+  }
+  return fmt::format(
+      "of the {} boxes in the file {} are of other classes than --classes, {} have too low a "
+      "score, {} belong to no frame, {} cannot be boxes",
+      boxes.in_file, boxes.other_class, boxes.low_score, boxes.other_time,
+      boxes.shares + boxes.inverted + boxes.outside);
+}
+
+}  // namespace
+
+std::string whyFewPoses(const RunCounts& counts) {
+  const std::size_t frames = counts.source.taken_up;
+  if (2 * counts.frames_tracked >= frames && frames > 0) {
+    return {};
+  }
+  std::vector<std::string> reasons;
+  const auto reason = [&](std::size_t count, const std::string& what) {
+    if (4 * count > frames) {  // less explains nothing
+      reasons.push_back(fmt::format("{} {}", count, what));
+    }
+  };
+  reason(counts.source.unreadable, "frames could not be read");
+  reason(counts.source.dropped, "came too late and were dropped (--mode realtime)");
+  reason(counts.source.without_depth,
+         "frames have no depth at any pixel, without which no map begins");
+  for (const auto& [failure, count] : counts.failures) {
+    reason(count, fmt::format("frames had {}{}", failure,
+                              failure == toString(TrackingFailure::kTooFewKeyPoints)
+                                  ? " with a depth, outside of what moves"
+                                  : " with the map"));
+  }
+  return fmt::format(
+      "{} of {} frames have a pose{}", counts.frames_tracked, frames,
+      reasons.empty() ? std::string() : fmt::format(": {}", fmt::join(reasons, "; ")));
+}
+
 std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptions& options) {
   std::vector<std::string> warnings;
-  const FilterRule rule = options.filter.filter.stage.rule;
+  const FilterRule rule = options.filter.rule;
   if (rule == FilterRule::kNone) {
     return warnings;
   }
   const std::string asked =
       std::string("the filter '") + hmcdyn::toString(rule) + "' had nothing to do: ";
-  if (counts.frames_with_boxes == 0) {
-    warnings.push_back(asked + (options.detector.type == "none"
-                                    ? "there is no detector (--detector none)"
-                                    : "the detector found no box in any frame"));
+  const bool has_masks = counts.motion_masks.count(toString(MaskState::kGood)) > 0;
+  if (counts.frames_with_boxes == 0 && options.detector.type != "none") {
+    warnings.push_back((has_masks ? "without a box, only the motion mask spoke: " : asked) +
+                       whyNoBox(counts));
+  } else if (counts.frames_with_boxes == 0 && !has_masks) {
+    warnings.push_back(asked + "there is no detector (--detector none)");
   }
   if (counts.frames_with_boxes > 0 && counts.frames_with_distances == 0 &&
       rule != FilterRule::kBox && rule != FilterRule::kDepthRansac) {
@@ -95,6 +143,13 @@ std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptio
 }
 
 namespace {
+
+/// As --filter has it, or as the options say that were made otherwise.
+std::string filterName(const SlamOptions& options) {
+  const FilterRule rule = options.filter.rule;
+  return rule == FilterRule::kHmc || options.ablation != Ablation::kNone ? options.filter_name
+                                                                         : hmcdyn::toString(rule);
+}
 
 nlohmann::json toJson(const std::vector<StageSummary>& stages) {
   nlohmann::json json;
@@ -145,10 +200,21 @@ nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
   summary["tracking_cpu_ms"] = trackingCpuMs(stages);
   summary["options"] = toJson(options, names.detector);
   summary["versions"] = libraryVersions();
-  summary["warnings"] = filterWarnings(counts, options);
+  summary["warnings"] = counts.notes;
+  for (const std::string& warning : filterWarnings(counts, options)) {
+    summary["warnings"].push_back(warning);
+  }
+  if (const std::string reason = whyFewPoses(counts); !reason.empty()) {
+    summary["warnings"].push_back(reason);
+  }
   for (const PartError& error : counts.errors) {
     summary["warnings"].push_back(
         fmt::format("{} failed {} times, at first with: {}", error.part, error.times, error.error));
+  }
+  if (!counts.detections.first_failure.empty()) {
+    summary["warnings"].push_back(fmt::format("the detector failed at {} of {} frames, first {}",
+                                              counts.detections.failed, counts.detections.requested,
+                                              counts.detections.first_failure));
   }
   summary["errors"] = toJson(counts.errors);
   if (!groundtruth.empty()) {
@@ -160,8 +226,8 @@ nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
 }
 
 nlohmann::json toJson(const SlamOptions& options, const std::string& detector_name) {
-  const FilterStageOptions& stage = options.filter.filter.stage;
-  const OpticalFlowOptions& flow = options.filter.filter.flow;
+  const FilterStageOptions& stage = options.filter.expert.stage;
+  const OpticalFlowOptions& flow = options.filter.expert.flow;
   return {{"dataset", options.dataset.string()},
           {"camera", options.camera},
           {"detector", detector_name},
@@ -171,8 +237,11 @@ nlohmann::json toJson(const SlamOptions& options, const std::string& detector_na
           {"bridge_s", options.bridge},
           {"mode", options.mode == RunMode::kOffline ? "offline" : "realtime"},
           {"held_images", options.held_images},
-          {"filter", hmcdyn::toString(stage.rule)},
-          {"soft_weights", options.filter.soft_weights},
+          {"filter", filterName(options)},
+          {"rule", hmcdyn::toString(options.filter.rule)},
+          {"ablation", hmcdyn::toString(options.ablation)},
+          {"min_kept", options.filter.min_kept},
+          {"soft_weight_gate", options.filter.soft_weight_gate},
           {"motion_model", options.tracker.fuse_motion},
           {"mapping", options.mapping.enabled},
           {"loops", options.loops.enabled},
@@ -206,6 +275,7 @@ nlohmann::json toJson(const RunCounts& counts) {
           {"frames_unreadable", counts.source.unreadable},
           {"frames_dropped", counts.source.dropped},
           {"frames_without_depth", counts.source.without_depth},
+          {"color_images_without_depth_image", counts.source.unpaired},
           {"tracking_rate", share(counts.frames_tracked, counts.source.taken_up)},
           {"key_frames", counts.key_frames},
           {"frames_with_boxes", counts.frames_with_boxes},
@@ -214,8 +284,12 @@ nlohmann::json toJson(const RunCounts& counts) {
           {"dynamic_boxes", counts.dynamic_boxes},
           {"key_points", counts.key_points},
           {"labels", counts.labels},
+          {"motion_masks", counts.motion_masks},
           {"motion_models", counts.models},
           {"motion_models_by_memory", counts.models_by_memory},
+          {"motion_models_by_prediction", counts.models_by_prediction},
+          {"frames_camera_unknown", counts.frames_camera_unknown},
+          {"frames_starved", counts.frames_starved},
           {"fundamental_verdicts", counts.fundamental},
           {"tracking_failures", counts.failures},
           {"lost_frames", counts.lost},
@@ -226,6 +300,15 @@ nlohmann::json toJson(const RunCounts& counts) {
             {"replaced", counts.detections.replaced},
             {"failed", counts.detections.failed}}},
           {"boxes_bridged", counts.boxes_bridged},
+          {"box_file",
+           {{"boxes", counts.box_file.in_file},
+            {"kept", counts.box_file.kept},
+            {"shares", counts.box_file.shares},
+            {"inverted", counts.box_file.inverted},
+            {"outside", counts.box_file.outside},
+            {"other_class", counts.box_file.other_class},
+            {"low_score", counts.box_file.low_score},
+            {"other_time", counts.box_file.other_time}}},
           {"dense_map_points", counts.map_points},
           {"stopped_by_signal", counts.stopped},
           {"write_failures", counts.write_failures}};
@@ -233,9 +316,12 @@ nlohmann::json toJson(const RunCounts& counts) {
 
 int exitCodeOf(const nlohmann::json& summary) {
   const nlohmann::json& counts = summary.at("counts");
-  const bool good = counts.at("frames_tracked") > 0 && counts.at("write_failures").empty() &&
-                    summary.at("errors").empty();
-  return good ? EXIT_SUCCESS : EXIT_FAILURE;
+  if (!counts.at("write_failures").empty() || !summary.at("errors").empty()) {
+    return EXIT_FAILURE;
+  }
+  const auto tracked = counts.at("frames_tracked").get<std::size_t>();
+  const auto frames = counts.value("frames_in", tracked);
+  return tracked == 0 || 2 * tracked < frames ? kFewPoses : EXIT_SUCCESS;
 }
 
 nlohmann::json libraryVersions() {
@@ -256,8 +342,10 @@ nlohmann::json evaluateTrajectory(const std::filesystem::path& groundtruth,
   evaluate::Trajectory truth;
   evaluate::Trajectory tracked;
   try {
-    truth = evaluate::readTrajectory(groundtruth);
     tracked = evaluate::readTrajectory(estimate);
+    truth = evaluate::readTrajectoryFor(groundtruth, tracked.front().timestamp,
+                                        tracked.back().timestamp)
+                .poses;
     result["ate_m"] = toJson(evaluate::absoluteTrajectoryError(truth, tracked).error);
   } catch (const std::exception& error) {
     result["error"] = error.what();

@@ -37,11 +37,11 @@ std::size_t nearestPicture(const std::vector<FramePicture>& pictures, std::size_
 }
 
 std::string caption(std::size_t index, const std::vector<ReportFrame>& frames, bool is_worst) {
-  std::string text = fmt::format("Frame {}", index);
   if (index >= frames.size()) {
-    return text;
+    return fmt::format("Frame {}", index);
   }
   const ReportFrame& frame = frames[index];
+  std::string text = fmt::format("Frame {}", frame.number.value_or(index));
   text += fmt::format(", {:.2f} s", frame.timestamp - frames.front().timestamp);
   if (std::isfinite(frame.error)) {
     text += fmt::format(", error {:.1f} mm", 1e3 * frame.error);

@@ -92,6 +92,11 @@ std::vector<double> frameTimes(const ReportInput& input) {
   return times;
 }
 
+/// Frames of the run.
+std::size_t framesInAll(const ReportInput& input) {
+  return std::max(input.frames_in_all, input.frames.size());
+}
+
 std::string headline(const ReportInput& input) {
   std::size_t tracked = 0;
   std::size_t dynamic = 0;
@@ -112,8 +117,11 @@ std::string headline(const ReportInput& input) {
                  numberAt(input.summary, "/evaluation/rpe_translation_m_per_s/rmse"), 4, "m/s");
   html += figure("Relative error, rotation",
                  numberAt(input.summary, "/evaluation/rpe_rotation_deg_per_s/rmse"), 3, "°/s");
-  html += figure("Frames tracked", static_cast<double>(tracked), 0,
-                 fmt::format("of {}", input.frames.size()));
+  html += figure("Frames tracked",
+                 framesInAll(input) == input.frames.size()
+                     ? static_cast<double>(tracked)
+                     : numberAt(input.summary, "/counts/frames_tracked"),
+                 0, fmt::format("of {}", framesInAll(input)));
   html += figure("Time a frame (mean)", times.empty() ? nan : timeStatistics(times).mean, 1, "ms");
   html +=
       figure("Key points on moving things",
@@ -147,6 +155,17 @@ ReportInput shownOf(const ReportInput& input) {
     shown.frames.push_back(input.frames[i]);
   }
   return shown;
+}
+
+/// What a run that is too long to be remembered frame by frame leaves out.
+std::string forgettingNote(const ReportInput& input) {
+  return framesInAll(input) == input.frames.size()
+             ? ""
+             : fmt::format(
+                   "<p class=\"note\">Of {} frames this page remembers {}, evenly over the run but "
+                   "for lost ones and key frames, which stay longer: times and shares are of "
+                   "these.</p>\n",
+                   framesInAll(input), input.frames.size());
 }
 
 std::string thinningNote(std::size_t shown, std::size_t all) {
@@ -317,8 +336,8 @@ std::string renderReport(const ReportInput& input) {
   std::string html = head(input.title);
   html += "<body>\n<header><h1>" + escapeHtml(input.title) + "</h1>\n";
   html += fmt::format("<p class=\"note\">hmcdyn_slam, {} frames</p></header>\n<main>\n",
-                      input.frames.size());
-  html += headline(input) + warningList(input) +
+                      framesInAll(input));
+  html += headline(input) + warningList(input) + forgettingNote(input) +
           thinningNote(shown.frames.size(), input.frames.size()) + trajectorySection(data) +
           timeSection(data);
   html +=

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct ReportFrame {
   std::string model;                 ///< Verdict on the camera's motion, "fundamental"; "" = none.
   std::string failure;               ///< Why the frame was lost; "" = tracked.
   bool key_frame = false;
+  /// In the run, from 0; nothing where it is the place in ReportInput::frames.
+  std::optional<std::size_t> number = std::nullopt;
 };
 
 struct ReportPicture {
@@ -48,6 +51,8 @@ struct ReportInput {
   std::string title;                ///< Such as the data set's name.
   std::vector<std::string> stages;  ///< Names of a frame's stages, in order.
   std::vector<ReportFrame> frames;  ///< In order of time; else the charts go by number.
+  /// Frames of the run, where `frames` does not hold all of them any more; 0 = it does.
+  std::size_t frames_in_all = 0;
   std::vector<LoopRow> loops;
   std::vector<ReportPicture> pictures;  ///< Beyond 8 MB they are left out, and the page says so.
   /// As summary.json has it. Known here: "evaluation" (ate_m, rpe_*), "options", "versions",

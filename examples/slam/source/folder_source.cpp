@@ -10,12 +10,36 @@
 
 namespace hmcdyn::slam {
 
+namespace {
+
+/// What is wrong, whichever file it is in: one reason for many frames.
+std::string withoutFiles(std::string reason, const FrameEntry& entry) {
+  for (const std::filesystem::path& file : {entry.rgb, entry.depth}) {
+    const std::size_t at = reason.find(file.string());
+    if (at != std::string::npos) {
+      reason.replace(at, file.string().size(), "a file");
+    }
+  }
+  return reason;
+}
+
+}  // namespace
+
 TumFolderSource::TumFolderSource(const std::filesystem::path& folder, const DatasetOptions& options,
                                  const CameraCalibration& calibration, Report report)
-    : folder_(folder),
-      entries_(listFrames(folder, options)),
-      calibration_(calibration),
-      report_(std::move(report)) {}
+    : TumFolderSource(readFrameList(folder, options), folder, calibration, std::move(report)) {}
+
+TumFolderSource::TumFolderSource(FrameList list, std::filesystem::path folder,
+                                 CameraCalibration calibration, Report report)
+    : folder_(std::move(folder)),
+      entries_(std::move(list.frames)),
+      calibration_(std::move(calibration)),
+      report_(std::move(report)) {
+  counts_.unpaired = list.color_without_depth;
+  for (const std::string& note : list.notes) {
+    report_(note);
+  }
+}
 
 void TumFolderSource::limit(std::size_t max_frames) {
   if (max_frames > 0 && max_frames < entries_.size()) {
@@ -32,11 +56,26 @@ std::optional<RgbdFrame> TumFolderSource::next() {
       counts_.without_depth += cv::countNonZero(frame.depth) == 0 ? 1 : 0;
       return frame;
     } catch (const std::runtime_error& error) {
-      ++counts_.unreadable;
-      report_(fmt::format("frame {} is left out: {}", entry.index, error.what()));
+      leaveOut(entry, error.what());
     }
   }
+  reportTheRest();
   return std::nullopt;
+}
+
+void TumFolderSource::leaveOut(const FrameEntry& entry, const std::string& reason) {
+  ++counts_.unreadable;
+  if (left_out_[withoutFiles(reason, entry)]++ == 0) {
+    report_(fmt::format("frame {} is left out: {}", entry.index, reason));
+  }
+}
+
+void TumFolderSource::reportTheRest() {
+  for (const auto& [reason, frames] : std::exchange(left_out_, {})) {
+    if (frames > 1) {
+      report_(fmt::format("{} frames were left out in all because {}", frames, reason));
+    }
+  }
 }
 
 std::string TumFolderSource::name() const {

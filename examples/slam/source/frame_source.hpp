@@ -16,6 +16,7 @@ using Report = std::function<void(const std::string& message)>;
 /// What a source counted so far.
 struct SourceCounts {
   std::size_t taken_up = 0;       ///< Frames that came, whatever became of them.
+  std::size_t unpaired = 0;       ///< Colour images that no depth image belongs to: no frames.
   std::size_t unreadable = 0;     ///< Left out: damaged, of another size, out of order.
   std::size_t dropped = 0;        ///< Left out: late, in real time.
   std::size_t without_depth = 0;  ///< Delivered, but no pixel has a depth.

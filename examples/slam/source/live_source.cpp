@@ -80,10 +80,10 @@ RgbdFrame toFrame(const CameraImages& images, double unit, std::size_t index) {
 
 }  // namespace
 
-LiveSource::LiveSource(std::unique_ptr<DepthCamera> camera, const CameraCalibration& calibration,
+LiveSource::LiveSource(std::unique_ptr<DepthCamera> camera, CameraCalibration calibration,
                        Report report, const LiveSourceOptions& options)
     : camera_(std::move(camera)),
-      calibration_(calibration),
+      calibration_(std::move(calibration)),
       report_(std::move(report)),
       options_(options) {
   if (!camera_) {

@@ -25,8 +25,8 @@ struct LiveSourceOptions {
 class LiveSource final : public FrameSource {
  public:
   /// @throws std::invalid_argument for a null camera or a bad option.
-  LiveSource(std::unique_ptr<DepthCamera> camera, const CameraCalibration& calibration,
-             Report report, const LiveSourceOptions& options = {});
+  LiveSource(std::unique_ptr<DepthCamera> camera, CameraCalibration calibration, Report report,
+             const LiveSourceOptions& options = {});
 
   /// Nothing when the camera gives no more images, or only such as cannot be used; failure() says
   /// so, and it stays so.

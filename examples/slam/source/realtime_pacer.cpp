@@ -33,8 +33,14 @@ class WallClock final : public SteadyClock {
 std::unique_ptr<SteadyClock> makeWallClock() { return std::make_unique<WallClock>(); }
 
 RealtimePacer::RealtimePacer(std::unique_ptr<RecordedSource> source,
-                             std::unique_ptr<SteadyClock> clock, double speed, std::size_t held)
-    : source_(std::move(source)), clock_(std::move(clock)), speed_(speed), held_(held) {
+                             std::unique_ptr<SteadyClock> clock, double speed, std::size_t held,
+                             std::function<bool()> stop, Report report)
+    : source_(std::move(source)),
+      clock_(std::move(clock)),
+      speed_(speed),
+      held_(held),
+      stop_(std::move(stop)),
+      report_(std::move(report)) {
   if (!source_ || !clock_) {
     throw std::invalid_argument(
         fmt::format("RealtimePacer: {} is null", source_ ? "clock" : "source"));
@@ -52,6 +58,35 @@ double RealtimePacer::dueTime(double timestamp) const {
   return start_ + (timestamp - *first_timestamp_) / speed_;
 }
 
+/// Moves the start so that a frame after a gap is due kLongestWait after the one before it.
+void RealtimePacer::cutGap(double timestamp) {
+  const double too_long = (timestamp - last_timestamp_) / speed_ - kLongestWait;
+  if (!(too_long > 0.0)) {
+    return;
+  }
+  start_ -= too_long;
+  if (report_ && !gap_reported_) {
+    report_(
+        fmt::format("the recording has a gap of {:.1f} s, which is waited for {} s; further "
+                    "gaps are not named",
+                    timestamp - last_timestamp_, kLongestWait));
+  }
+  gap_reported_ = true;
+}
+
+/// False where it was stopped before.
+bool RealtimePacer::waitUntil(double time) {
+  constexpr double kAsked = 0.1;  // s
+  while (!(stop_ && stop_())) {
+    const double now = clock_->now();
+    if (now >= time) {
+      return true;
+    }
+    clock_->sleepUntil(stop_ ? std::min(time, now + kAsked) : time);
+  }
+  return false;
+}
+
 std::optional<RgbdFrame> RealtimePacer::next() {
   if (!source_->upcomingTimestamp(0)) {
     return std::nullopt;
@@ -59,6 +94,7 @@ std::optional<RgbdFrame> RealtimePacer::next() {
   const double now = clock_->now();
   if (!first_timestamp_) {
     first_timestamp_ = source_->upcomingTimestamp(0);
+    last_timestamp_ = *first_timestamp_;
     start_ = now;
     due_ = now;
     return source_->next();
@@ -66,12 +102,15 @@ std::optional<RgbdFrame> RealtimePacer::next() {
   const auto isDue = [&](std::optional<double> timestamp) {
     return timestamp && dueTime(*timestamp) <= now;
   };
+  cutGap(*source_->upcomingTimestamp(0));
   while (isDue(source_->upcomingTimestamp(held_))) {
+    last_timestamp_ = *source_->upcomingTimestamp(0);
     source_->skip();
+    cutGap(*source_->upcomingTimestamp(0));
   }
-  due_ = std::max(*due_, dueTime(*source_->upcomingTimestamp(0)));
-  clock_->sleepUntil(*due_);
-  return source_->next();
+  last_timestamp_ = *source_->upcomingTimestamp(0);
+  due_ = std::max(*due_, dueTime(last_timestamp_));
+  return waitUntil(*due_) ? source_->next() : std::nullopt;
 }
 
 std::optional<double> RealtimePacer::secondsSinceDue() const {

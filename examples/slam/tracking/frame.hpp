@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
+#include <hmcdyn/depth_error.hpp>
 #include <hmcdyn/types.hpp>
 
 #include "slam/features/orb_extractor.hpp"
@@ -32,9 +33,11 @@ struct Frame {
   Features features;                    ///< N ORB key points with descriptors.
   KeyPoints points;                     ///< The same N, with depth.
   std::vector<float> sigma;             ///< N standard deviations of a pixel (px), by octave.
+  std::vector<float> depth_spread;      ///< N: how far depths beside the point differ (m).
   std::vector<PointLabel> label;        ///< N verdicts of the filter.
-  std::vector<float> weight;            ///< N weights of eq. 7.
-  std::vector<std::uint8_t> in_person;  ///< N flags: in the box of a person.
+  std::vector<float> lambda;            ///< N weights of eq. 7, for map and beliefs.
+  std::vector<float> weight;            ///< N weights for the refinement: lambda, or 0 and 1.
+  std::vector<std::uint8_t> in_person;  ///< N flags: of a person, or of a thing that moved before.
   bool soft_weights = false;            ///< The 0.6 rule: eq. 7's weights, or 0 and 1 only.
 
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
@@ -48,6 +51,24 @@ struct Frame {
 /// neighbours that have one, provided they agree within 5 %; else 0.
 std::vector<float> depthAtKeyPoints(const cv::Mat& depth,
                                     const std::vector<cv::KeyPoint>& key_points);
+
+/// Half the range of depths (m) within 2 px of key points. Colour and depth are registered no
+/// better than that, so a depth beside an edge may be that of the other side. 0 where there is no
+/// depth.
+std::vector<float> depthSpreadAtKeyPoints(const cv::Mat& depth,
+                                          const std::vector<cv::KeyPoint>& key_points);
+
+/// Standard deviations (m) of the depths of key points that are used together, against what other
+/// views of the same points measured; 1 where there is none. What is wrong with a depth its
+/// neighbours share (on a Kinect, at 50 px half of what they share at 10 px): n depths in a square
+/// of 100 px say together what one of them says. Depths beside an edge may be that of the other
+/// side.
+std::vector<float> depthSigmas(const Frame& frame, const std::vector<std::size_t>& key_points,
+                               const DepthErrorModel& model);
+
+/// A measured depth (m) without the systematic error of its point: z, where z + offset z^2 was
+/// measured (offset in 1/m, see BundleProblem).
+float withoutOffset(float measured, double offset);
 
 /// A frame of features, not yet filtered or tracked: every point static, weight 1.
 /// @param depth CV_32FC1 (m), 0 = none.

@@ -115,7 +115,7 @@ ProjectionSearch matchByProjection(const Frame& frame, const KeyPointGrid& grid,
                                    const std::vector<int>& candidates,
                                    const Eigen::Isometry3d& camera_from_world,
                                    const PinholeCamera& camera, float radius,
-                                   const MatcherOptions& options) {
+                                   const MatcherOptions& options, MatchPolicy policy) {
   ProjectionSearch search;
   std::vector<PointMatch> by_key_point(frame.points.size());
   for (const int id : candidates) {
@@ -145,7 +145,9 @@ ProjectionSearch matchByProjection(const Frame& frame, const KeyPointGrid& grid,
     if (best.distance == std::numeric_limits<int>::max()) {
       continue;
     }
-    if (frame.weight[best.key_point] > 0.0f) {
+    const bool trusted = policy == MatchPolicy::kTrustedPoints &&
+                         point.belief.log_odds >= map.options().belief.trust;
+    if (frame.weight[best.key_point] > 0.0f || trusted) {
       claim(by_key_point, {id, best.key_point, best.distance});
     } else {
       search.seen_dynamic.push_back(id);
@@ -159,6 +161,8 @@ std::vector<PointMatch> matchByDescriptor(const Frame& frame, const KeyFrame& ke
                                           const MatcherOptions& options) {
   const Frame& other = key_frame.frame;
   std::vector<PointMatch> by_key_point(frame.points.size());
+  // What the map point that looks most like each key point looks like, whatever that one prefers.
+  std::vector<int> nearest(frame.points.size(), std::numeric_limits<int>::max());
   for (std::size_t j = 0; j < other.points.size(); ++j) {
     if (other.map_point[j] == kNoMapPoint) {
       continue;
@@ -171,6 +175,7 @@ std::vector<PointMatch> matchByDescriptor(const Frame& frame, const KeyFrame& ke
         continue;
       }
       const int distance = hammingDistance(descriptorAt(other, j), descriptorAt(frame, i));
+      nearest[i] = std::min(nearest[i], distance);
       if (distance < best) {
         second = best;
         best = distance;
@@ -183,6 +188,11 @@ std::vector<PointMatch> matchByDescriptor(const Frame& frame, const KeyFrame& ke
     if (best <= options.max_distance &&
         static_cast<float>(best) < kStrictRatio * static_cast<float>(second)) {
       claim(by_key_point, {other.map_point[j], best_point, best});
+    }
+  }
+  for (std::size_t i = 0; i < by_key_point.size(); ++i) {
+    if (by_key_point[i].distance > nearest[i]) {  // its own best choice went elsewhere
+      by_key_point[i] = {};
     }
   }
   return claimed(by_key_point);

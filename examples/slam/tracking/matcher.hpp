@@ -14,6 +14,14 @@
 
 namespace hmcdyn::slam {
 
+/// Which key points may be matched.
+enum class MatchPolicy : std::uint8_t {
+  kKeptPoints,  ///< Those that the filter keeps.
+  /// All, where they look like a point that the map trusts to stand still and are where it should
+  /// be: for frames in which the filter leaves too few.
+  kTrustedPoints,
+};
+
 struct MatcherOptions {
   int max_distance = 70;      ///< Descriptors farther apart do not match (bits of 256).
   float max_ratio = 0.9f;     ///< Best to second best distance on the same pyramid level.
@@ -55,13 +63,14 @@ struct ProjectionSearch {
 
 /// Matches map points with the frame's key points near their projection at a pose. Key points of
 /// weight 0 compete, so that a point on a moving thing is not matched with its static neighbour,
-/// but are not matched.
+/// but are matched by MatchPolicy::kTrustedPoints only.
 /// @param radius of the search window at the finest level (px); grows with the level.
 ProjectionSearch matchByProjection(const Frame& frame, const KeyPointGrid& grid, const Map& map,
                                    const std::vector<int>& candidates,
                                    const Eigen::Isometry3d& camera_from_world,
                                    const PinholeCamera& camera, float radius,
-                                   const MatcherOptions& options);
+                                   const MatcherOptions& options,
+                                   MatchPolicy policy = MatchPolicy::kKeptPoints);
 
 /// Matches the map points of a key frame with a frame's key points by descriptor alone, mutually
 /// best, for when there is no pose to search around.

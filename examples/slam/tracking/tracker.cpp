@@ -2,6 +2,7 @@
 #include "slam/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -9,32 +10,25 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
+#include "slam/tracking/matched_points.hpp"
+
 namespace hmcdyn::slam {
 namespace {
 
-constexpr std::size_t kMinPointsToStart = 50;
+constexpr std::size_t kMinPointsToStart = 30;  // half as many again as tracking needs
 
-/// The matched points as arrays for the refinement.
-struct ObservationArrays {
-  std::vector<float> x, y, z, u, v, sigma, depth, weight;
-
-  ObservationArrays(const Frame& frame, const std::vector<PointMatch>& matches, const Map& map) {
-    for (const PointMatch& match : matches) {
-      const Eigen::Vector3f point =
-          map.points()[static_cast<std::size_t>(match.map_point)].position.cast<float>();
-      x.push_back(point.x());
-      y.push_back(point.y());
-      z.push_back(point.z());
-      u.push_back(frame.points.u[match.key_point]);
-      v.push_back(frame.points.v[match.key_point]);
-      sigma.push_back(frame.sigma[match.key_point]);
-      depth.push_back(frame.points.depth[match.key_point]);
-      weight.push_back(frame.weight[match.key_point]);
-    }
+/// Median depth (m) of the key points that have one; 1 where none has.
+double medianDepth(const Frame& frame) {
+  std::vector<float> depths;
+  std::copy_if(frame.points.depth.begin(), frame.points.depth.end(), std::back_inserter(depths),
+               [](float depth) { return hasDepth(depth); });
+  if (depths.empty()) {
+    return 1.0;
   }
-
-  PoseObservations view() const { return {x, y, z, u, v, sigma, depth, weight}; }
-};
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
 
 std::size_t staticPointsWithDepth(const Frame& frame) {
   std::size_t count = 0;
@@ -64,19 +58,33 @@ Tracker::Tracker(const PinholeCamera& camera, const TrackerOptions& options)
     : camera_(camera), options_(options), map_(camera, options_.map), motion_(options_.motion) {}
 
 PoseRefinementResult Tracker::refine(const Frame& frame, const std::vector<PointMatch>& matches,
-                                     const Eigen::Isometry3d& initial) const {
-  const ObservationArrays arrays(frame, matches, map_);
-  return refinePose(arrays.view(), camera_, initial, options_.refinement, workspace_);
+                                     const Eigen::Isometry3d& initial, MatchPolicy policy) const {
+  MatchedPoints points(frame, matches, map_, policy);
+  PoseRefinementResult refined =
+      refinePose(points.view(), camera_, initial, options_.refinement, workspace_);
+  if (refined.succeeded() && points.dropDisagreeingDepths(refined, camera_, options_.refinement)) {
+    refined = refinePose(points.view(), camera_, refined.camera_from_world, options_.refinement,
+                         workspace_);
+  }
+  return refined;
 }
 
 Tracker::Estimate Tracker::estimate(const Frame& frame, const KeyPointGrid& grid,
                                     const std::vector<int>& candidates,
                                     const Eigen::Isometry3d& around, float radius) const {
-  Estimate estimate;
-  estimate.search =
-      matchByProjection(frame, grid, map_, candidates, around, camera_, radius, options_.matcher);
-  estimate.refinement = refine(frame, estimate.search.matches, around);
-  return estimate;
+  const auto estimateBy = [&](MatchPolicy policy) {
+    Estimate estimate;
+    estimate.search = matchByProjection(frame, grid, map_, candidates, around, camera_, radius,
+                                        options_.matcher, policy);
+    estimate.refinement = refine(frame, estimate.search.matches, around, policy);
+    return estimate;
+  };
+  Estimate kept = estimateBy(MatchPolicy::kKeptPoints);
+  if (kept.refinement.inliers >= options_.few_inliers) {
+    return kept;
+  }
+  Estimate trusted = estimateBy(MatchPolicy::kTrustedPoints);
+  return trusted.refinement.inliers > kept.refinement.inliers ? trusted : kept;
 }
 
 std::optional<Eigen::Isometry3d> Tracker::relocalize(const Frame& frame) const {
@@ -103,7 +111,7 @@ std::optional<Eigen::Isometry3d> Tracker::relocalize(const Frame& frame) const {
     constexpr int kIterations = 200;
     constexpr float kReprojection = 4.0f;  // px
     constexpr double kConfidence = 0.999;
-    const bool found =
+    const bool found =  // draws that OpenCV seeds with a constant
         cv::solvePnPRansac(world, pixels, intrinsics, cv::noArray(), rotation, translation, false,
                            kIterations, kReprojection, kConfidence, inliers, cv::SOLVEPNP_EPNP);
     if (!found || inliers.size() < options_.min_inliers) {
@@ -121,12 +129,20 @@ std::optional<Eigen::Isometry3d> Tracker::relocalize(const Frame& frame) const {
 }
 
 bool Tracker::needsKeyFrame(const Frame& frame) const {
-  const KeyFrame& reference = map_.keyFrames().back();
-  const auto inliers = static_cast<double>(frame.inliers);
-  return frame.inliers < options_.key_frames.min_inliers ||
-         inliers <
-             options_.key_frames.min_reference_share * static_cast<double>(reference.map_points) ||
-         frame.index - reference.frame.index >= options_.key_frames.max_interval;
+  const KeyFramePolicy& policy = options_.key_frames;
+  const Frame& reference = map_.keyFrames().back().frame;
+  const std::size_t known =
+      reference.inliers > 0 ? reference.inliers : map_.keyFrames().back().map_points / 2;
+  if (static_cast<double>(frame.inliers) <
+      policy.min_reference_share * static_cast<double>(known)) {
+    return true;
+  }
+  if (frame.inliers < policy.min_inliers && map_.newPointsIn(frame) >= policy.min_new_points) {
+    return true;
+  }
+  const Eigen::Isometry3d way = frame.camera_from_world * reference.camera_from_world.inverse();
+  return Eigen::AngleAxisd(way.linear()).angle() > policy.max_turn ||
+         way.translation().norm() > policy.max_parallax * medianDepth(frame);
 }
 
 TrackingResult Tracker::initialize(Frame frame) {
@@ -204,47 +220,27 @@ void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search)
       evidence.label = PointLabel::kDynamic;
     } else if (evidence.agrees) {
       evidence.label = frame.label[found->second];
-      evidence.weight = frame.weight[found->second];
+      evidence.weight = frame.lambda[found->second];
     }
     map_.count(point, evidence.agrees, evidence);
   }
 }
 
-bool Tracker::liesOn(const Frame& frame, const PointMatch& match) const {
-  const Eigen::Vector3d in_camera =
-      frame.camera_from_world * map_.points()[static_cast<std::size_t>(match.map_point)].position;
-  const Eigen::Vector2d pixel = camera_.project(in_camera);
-  const double dx = pixel.x() - frame.points.u[match.key_point];
-  const double dy = pixel.y() - frame.points.v[match.key_point];
-  constexpr double kPixelSigmas = 2.0;
-  constexpr double kDepthSigmas = 3.0;
-  const double reach = kPixelSigmas * frame.sigma[match.key_point];
-  const float depth = frame.points.depth[match.key_point];
-  const double noise = options_.map.depth_noise_floor +
-                       options_.map.depth_noise_quadratic * in_camera.z() * in_camera.z();
-  return dx * dx + dy * dy <= reach * reach &&
-         (!hasDepth(depth) || std::abs(depth - in_camera.z()) <= kDepthSigmas * noise);
-}
-
-void Tracker::tieToForgottenPoints(Frame& frame, const KeyPointGrid& grid) const {
-  std::vector<int> forgotten;
-  const int now = static_cast<int>(map_.keyFrames().size());
-  const std::unordered_set<int> tied(frame.map_point.begin(), frame.map_point.end());
-  for (const int point : map_.pointsOf(map_.nearestKeyFrames(frame.camera_from_world))) {
-    const int last_seen = map_.points()[static_cast<std::size_t>(point)].last_key_frame;
-    if (now - last_seen > options_.forgotten_after && tied.count(point) == 0) {
-      forgotten.push_back(point);
-    }
+void Tracker::insertKeyFrame(Frame& frame, const KeyPointGrid& grid) {
+  map_.cull();
+  tieToForgottenPoints(frame, grid, map_, options_.duplicates);
+  map_.insertKeyFrame(frame);
+  for (const TriangulatedPoint& point : triangulateNewPoints(map_, options_.triangulation)) {
+    map_.addPoint(point.position, point.first, point.second);
   }
-  const ProjectionSearch search =
-      matchByProjection(frame, grid, map_, forgotten, frame.camera_from_world, camera_,
-                        options_.refined_radius, options_.matcher);
-  for (const PointMatch& match : search.matches) {
-    int& map_point = frame.map_point[match.key_point];
-    if (map_point == kNoMapPoint && liesOn(frame, match)) {
-      map_point = match.map_point;
-    }
+  const KnownPoints known = knownPointsOf(map_, options_.duplicates);
+  for (const KnownPoints::Sighting& seen : known.sightings) {
+    map_.addObservation(seen.point, seen.key_frame, seen.key_point);
   }
+  for (const auto& [point, into] : known.duplicates) {
+    map_.fusePoints(point, into);
+  }
+  frame.map_point = map_.keyFrames().back().frame.map_point;
 }
 
 Tracker::Estimate Tracker::findAgain(const Frame& frame, const KeyPointGrid& grid,
@@ -262,6 +258,10 @@ Tracker::Estimate Tracker::findAgain(const Frame& frame, const KeyPointGrid& gri
     }
   }
   return found;
+}
+
+std::optional<MotionPrediction> Tracker::predict(double timestamp) const {
+  return lost_ ? std::nullopt : motion_.predict(timestamp);
 }
 
 TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
@@ -291,6 +291,11 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
     around = map_.pointsOf(map_.nearestKeyFrames(coarse.refinement.camera_from_world));
   }
 
+  const double noise =
+      noiseFactor(frame, coarse.search.matches, coarse.refinement.camera_from_world, map_);
+  for (float& sigma : frame.sigma) {
+    sigma = static_cast<float>(sigma * noise);
+  }
   const Estimate fine =
       estimate(frame, grid, around, coarse.refinement.camera_from_world, options_.refined_radius);
   if (!fine.refinement.succeeded() || fine.refinement.inliers < options_.min_inliers) {
@@ -307,8 +312,12 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
       frame.map_point[fine.search.matches[k].key_point] = fine.search.matches[k].map_point;
     }
   }
-  const MotionModel::Update update = motion_.update(
-      frame.timestamp, fine.refinement.camera_from_world, fine.refinement.covariance);
+  std::optional<MotionModel::Matrix6> covariance;
+  if (fine.refinement.covariance) {
+    covariance = fine.refinement.covariance->map();
+  }
+  const MotionModel::Update update =
+      motion_.update(frame.timestamp, fine.refinement.camera_from_world, covariance);
   frame.camera_from_world = fine.refinement.camera_from_world;
   if (options_.fuse_motion && update.fused && expected && expected->covariance) {
     frame.camera_from_world = update.camera_from_world;
@@ -325,9 +334,7 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   result.relocalized = lost_;
   lost_ = false;
   if (needsKeyFrame(frame)) {
-    map_.cull();
-    tieToForgottenPoints(frame, grid);
-    map_.insertKeyFrame(frame);
+    insertKeyFrame(frame, grid);
     result.new_key_frame = true;
   }
   result.reference = static_cast<int>(map_.keyFrames().size()) - 1;

@@ -14,21 +14,31 @@
 #include <hmcdyn/types.hpp>
 
 #include "slam/mapping/map.hpp"
+#include "slam/mapping/triangulation.hpp"
+#include "slam/tracking/duplicates.hpp"
 #include "slam/tracking/frame.hpp"
 #include "slam/tracking/matcher.hpp"
 #include "slam/tracking/motion_model.hpp"
 
 namespace hmcdyn::slam {
 
+/// When a new key frame is due: when the camera sees what the map does not have. A camera that
+/// stands still needs none.
 struct KeyFramePolicy {
-  /// A new key frame is due when fewer than this share of the reference key frame's points ...
-  double min_reference_share = 0.8;
-  std::size_t min_inliers = 150;  ///< ... or fewer than so many points are tracked, ...
-  std::size_t max_interval = 10;  ///< ... or so many frames have passed since the last.
+  /// Fewer points are tracked than this share of those that the last key frame tracked. Points that
+  /// it made itself do not count: half of them are never seen again.
+  double min_reference_share = 0.9;
+  /// So few points are tracked, and so many others could be new ones.
+  std::size_t min_inliers = 100;
+  std::size_t min_new_points = 70;
+  /// The camera has turned by so much since the last key frame (rad), or moved by this share of the
+  /// depth of what it sees (median).
+  double max_turn = 0.25;
+  double max_parallax = 0.04;
 };
 
 /// Refinement with a row for depth, which a depth camera measures independently of the pixels.
-inline PoseRefinementOptions rgbdRefinement() {
+inline PoseRefinementOptions rgbdRefinement() {  // depths by their own sigma
   PoseRefinementOptions options;
   options.depth_row = DepthRow::kDepth;
   return options;
@@ -45,14 +55,16 @@ struct TrackerOptions {
   float wide_radius = 40.0f;        ///< The same after a first failure (px).
   float refined_radius = 5.0f;      ///< The same around the refined pose (px).
   std::size_t min_inliers = 20;     ///< Fewer, and the frame is lost.
-  /// A key frame looks for points at its place that none of so many key frames before it saw: the
-  /// local map has lost them, and they would be made again at each visit, without end.
-  int forgotten_after = 20;
+  /// Fewer, and the map has the word: points that it trusts are matched with whatever looks like
+  /// them, whether or not the filter keeps it (MatchPolicy). ORB-SLAM's weak tracking, too, begins
+  /// around a hundred.
+  std::size_t few_inliers = 100;
+  TriangulationOptions triangulation;  ///< Of key points without a depth.
+  DuplicateOptions duplicates;         ///< Points that a key frame sees again.
   /// How fast a camera moves (m/s, rad/s). A lost frame that is found where the camera can have got
   /// to is believed: within a second of the last tracked frame, else after the frame found before.
   double fastest = 2.0;
   double fastest_turn = 3.0;
-  std::uint32_t seed = 1;  ///< Of the random draws in relocalisation.
 };
 
 /// Why a frame has no pose.
@@ -91,6 +103,12 @@ class Tracker {
   /// @param by_place is asked when neither prediction nor the latest key frames help; may be empty.
   TrackingResult track(Frame frame, const Relocalize& by_place = {});
 
+  /// Where the camera is expected at a time; nothing before the first frame and while it is lost.
+  std::optional<MotionPrediction> predict(double timestamp) const;
+
+  /// The last tracked frame, where the map has it now; null before the first one.
+  const Frame* lastFrame() const noexcept { return last_ ? &*last_ : nullptr; }
+
   const Map& map() const noexcept { return map_; }
 
   /// Takes up an optimisation's result: the map moves, and the last frame with it.
@@ -106,7 +124,7 @@ class Tracker {
                     const std::vector<int>& candidates, const Eigen::Isometry3d& around,
                     float radius) const;
   PoseRefinementResult refine(const Frame& frame, const std::vector<PointMatch>& matches,
-                              const Eigen::Isometry3d& initial) const;
+                              const Eigen::Isometry3d& initial, MatchPolicy policy) const;
   std::optional<Eigen::Isometry3d> relocalize(const Frame& frame) const;
   Estimate findAgain(const Frame& frame, const KeyPointGrid& grid,
                      const std::vector<int>& candidates, const Relocalize& by_place) const;
@@ -116,8 +134,7 @@ class Tracker {
   bool isBelievable(double timestamp, const Eigen::Isometry3d& found) const;
   bool isReachable(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
                    double seconds) const;
-  bool liesOn(const Frame& frame, const PointMatch& match) const;
-  void tieToForgottenPoints(Frame& frame, const KeyPointGrid& grid) const;
+  void insertKeyFrame(Frame& frame, const KeyPointGrid& grid);
   void countSightings(const Frame& frame, const ProjectionSearch& search);
 
   PinholeCamera camera_;

@@ -18,9 +18,10 @@
 namespace hmcdyn::detail {
 
 /// Clusters finite points whose columns are in lexicographic order: ties then fall to the smaller
-/// index, and clusters come out numbered by their smallest core point.
-inline Clustering clusterSorted(const Eigen::MatrixXf& points, const MinkowskiBall& ball,
-                                int min_points) {
+/// index, and clusters come out numbered by their smallest core point. No two columns are equal:
+/// `times` says how many points lie there, so that duplicates cost no more than one of them.
+inline Clustering clusterSorted(const Eigen::MatrixXf& points, const std::vector<int>& times,
+                                const MinkowskiBall& ball, int min_points) {
   const auto n = static_cast<std::size_t>(points.cols());
   const Eigen::Index dimensions = points.rows();
   const KdTree tree(points);
@@ -41,8 +42,8 @@ inline Clustering clusterSorted(const Eigen::MatrixXf& points, const MinkowskiBa
   result.label.assign(n, kNoise);
   result.is_core.assign(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
-    int neighbours = 0;
-    visitNeighbours(i, [&](std::uint32_t, float) { ++neighbours; });
+    std::int64_t neighbours = 0;
+    visitNeighbours(i, [&](std::uint32_t j, float) { neighbours += times[j]; });
     result.is_core[i] = neighbours >= min_points ? 1 : 0;
   }
 
@@ -104,15 +105,24 @@ void clusterByKdTree(const Matrix& points, const MinkowskiBall& ball, int min_po
   if (order.empty()) {
     return;
   }
-  Eigen::MatrixXf sorted(points.rows(), static_cast<Eigen::Index>(order.size()));
+  // Of equal points one, and how many there are.
+  Eigen::MatrixXf different(points.rows(), static_cast<Eigen::Index>(order.size()));
+  std::vector<int> times;
+  std::vector<std::size_t> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    sorted.col(static_cast<Eigen::Index>(i)) = points.col(order[i]);
+    if (i == 0 || points.col(order[i]) != points.col(order[i - 1])) {
+      different.col(static_cast<Eigen::Index>(times.size())) = points.col(order[i]);
+      times.push_back(0);
+    }
+    ++times.back();
+    place[i] = times.size() - 1;
   }
-  const Clustering of_sorted = clusterSorted(sorted, ball, min_points);
-  result.clusters = of_sorted.clusters;
+  different.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(times.size()));
+  const Clustering of_different = clusterSorted(different, times, ball, min_points);
+  result.clusters = of_different.clusters;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    result.label[static_cast<std::size_t>(order[i])] = of_sorted.label[i];
-    result.is_core[static_cast<std::size_t>(order[i])] = of_sorted.is_core[i];
+    result.label[static_cast<std::size_t>(order[i])] = of_different.label[place[i]];
+    result.is_core[static_cast<std::size_t>(order[i])] = of_different.is_core[place[i]];
   }
 }
 

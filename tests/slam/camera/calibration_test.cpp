@@ -147,8 +147,8 @@ TEST_F(CalibrationFile, OwnSpellingWithEverything) {
   EXPECT_EQ(calibration.frame_rate, 25.0);
   EXPECT_EQ(calibration.baseline_fx, 40.0);
 
-  EXPECT_EQ(read(std::string(kOwn) + "distortion: [1, 2, 3, 4, 5]\n").distortion,
-            (Coefficients{1, 2, 3, 4, 5}));
+  EXPECT_EQ(read(std::string(kOwn) + "distortion: [0.1, 0.2, 0.03, 0.04, 0.5]\n").distortion,
+            (Coefficients{0.1, 0.2, 0.03, 0.04, 0.5}));
   EXPECT_EQ(read(std::string(kOwn) + "k1: 0.5\np2: 0.25\n").distortion,
             (Coefficients{0.5, 0.0, 0.0, 0.25, 0.0}));
 }

@@ -133,6 +133,33 @@ TEST_P(DistortedCamera, ABoxHoldsWhatItHeldAndNoMore) {
   EXPECT_NEAR(box.y_max, most.y(), 0.05);
 }
 
+TEST_P(DistortedCamera, ARawBoxIsTheSmallestAroundTheBentBorder) {
+  const DetectionBox box{200.0f, 150.0f, 420.0f, 330.0f, 7, 0.5f};
+  Eigen::Vector2d low(1e9, 1e9);
+  Eigen::Vector2d high(-1e9, -1e9);
+  const auto cover = [&](double u, double v) {
+    const Eigen::Vector2d raw = distort(camera, u, v);
+    low = low.cwiseMin(raw);
+    high = high.cwiseMax(raw);
+  };
+  for (int u = 200; u <= 420; ++u) {
+    cover(u, box.y_min);
+    cover(u, box.y_max);
+  }
+  for (int v = 150; v <= 330; ++v) {
+    cover(box.x_min, v);
+    cover(box.x_max, v);
+  }
+  const DetectionBox raw = rectifier.rawBox(box);
+  // The border is mapped at some of its points; between them it bends by less than this.
+  EXPECT_NEAR(raw.x_min, low.x(), 0.1);
+  EXPECT_NEAR(raw.y_min, low.y(), 0.1);
+  EXPECT_NEAR(raw.x_max, high.x(), 0.1);
+  EXPECT_NEAR(raw.y_max, high.y(), 0.1);
+  EXPECT_EQ(raw.class_id, 7);
+  EXPECT_EQ(raw.score, 0.5f);
+}
+
 TEST_P(DistortedCamera, OfABoxThatReachesOutsideTheImagePartCounts) {
   const DetectionBox image = rectifier.box({0.0f, 0.0f, 639.0f, 479.0f});
   const DetectionBox larger = rectifier.box({-4000.0f, -4000.0f, 4000.0f, 4000.0f});

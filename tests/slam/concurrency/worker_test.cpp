@@ -230,6 +230,33 @@ TEST(Worker, ServesSeveralProducersAtOnce) {
   EXPECT_EQ(sum, kCount * (kCount - 1));  // 2 (0 + 1 + ... + kCount - 1)
 }
 
+// Which of the two comes first is open; that one has to wait for the gate, and the other must not.
+TEST(Worker, OfTwoTakersOfOneResultOneIsTurnedAway) {
+  Gate gate;
+  Worker<int, int> worker(behind(gate), 1);
+  worker.submit(21);
+  gate.awaitBegin();
+  std::promise<std::string> turned_away;
+  std::atomic<int> taken{0};
+  const auto take = [&] {
+    try {
+      taken += worker.take();
+    } catch (const std::logic_error& error) {
+      turned_away.set_value(error.what());
+    }
+  };
+  std::thread one(take);
+  std::thread other(take);
+  EXPECT_EQ(turned_away.get_future().get(),
+            "Worker::take: no job is pending but the 1 that others wait for; submit one first");
+  EXPECT_EQ(worker.tryTake(), std::nullopt);
+  gate.open();
+  one.join();
+  other.join();
+  EXPECT_EQ(taken, 42);
+  EXPECT_EQ(worker.pending(), 0u);
+}
+
 TEST(Worker, RefusesWhatCannotBe) {
   EXPECT_THROW((Worker<int, int>(nullptr, 1)), std::invalid_argument);
   EXPECT_THROW((Worker<int, int>(twice, 0)), std::invalid_argument);

@@ -49,6 +49,68 @@ TEST(StaticMask, TakesWhatCoversNothing) {
   EXPECT_EQ(cv::countNonZero(staticMask({40, 20}, all, {})), 0);
 }
 
+/// Nothing moves in 40 x 20 pixels.
+cv::Mat stillMotion() { return cv::Mat::zeros(20, 40, CV_8UC1); }
+cv::Mat depthOf(float metres) { return {20, 40, CV_32FC1, cv::Scalar(metres)}; }
+int leftOut(const cv::Mat& mask) { return 40 * 20 - cv::countNonZero(mask); }
+
+TEST(StaticMaskByMotion, LeavesOutWhatMovesOrMayMoveWithTheMarginAndDynamicPoints) {
+  StaticDepthOptions options;
+  options.box_margin = 1.0f;
+  options.point_radius = 0.0f;
+  cv::Mat motion = stillMotion();
+  motion.at<std::uint8_t>(5, 30) = 255;
+  motion.at<std::uint8_t>(10, 30) = 128;
+  motion.row(0).setTo(64);
+  const std::vector<cv::Point2f> points{{2.0f, 15.0f}};
+  const cv::Mat mask = staticMaskByMotion(motion, depthOf(2.0f), {}, points, options);
+  EXPECT_EQ(leftOut(mask), 9 + 9 + 1);  // 3 x 3 around each of the two, a point; not the unknown
+  EXPECT_EQ(mask.at<std::uint8_t>(6, 31), 0) << "moves";
+  EXPECT_EQ(mask.at<std::uint8_t>(9, 29), 0) << "stands but may move";
+  EXPECT_EQ(mask.at<std::uint8_t>(15, 2), 0) << "a dynamic key point";
+}
+
+TEST(StaticMaskByMotion, KeepsInABoxOnlyWhatLiesWellBehindTheThing) {
+  StaticDepthOptions options;
+  options.box_margin = 0.0f;
+  options.room_behind = 0.5f;
+  const std::vector<DetectionBox> boxes{box(10, 5, 19, 14)};
+  cv::Mat motion = stillMotion();
+  motion(cv::Rect(10, 5, 5, 10)).setTo(128);  // the left half of the box: who stands, at 2 m
+  cv::Mat depth = depthOf(4.0f);
+  depth(cv::Rect(10, 5, 5, 10)).setTo(2.0f);
+  depth(cv::Rect(15, 5, 5, 1)).setTo(2.4f);  // an arm that the mask missed
+  depth(cv::Rect(15, 6, 5, 1)).setTo(1.0f);  // a knee
+  depth(cv::Rect(15, 7, 5, 1)).setTo(std::numeric_limits<float>::quiet_NaN());
+  const cv::Mat mask = staticMaskByMotion(motion, depth, boxes, {}, options);
+  EXPECT_EQ(leftOut(mask), 50 + 15);
+  EXPECT_EQ(mask.at<std::uint8_t>(5, 16), 0);
+  EXPECT_EQ(mask.at<std::uint8_t>(6, 16), 0);
+  EXPECT_EQ(mask.at<std::uint8_t>(8, 16), 255) << "the wall in the box";
+  EXPECT_EQ(mask.at<std::uint8_t>(6, 30), 255) << "outside the box";
+}
+
+TEST(StaticMaskByMotion, LeavesOutAWholeBoxInWhichTheMaskNamesNothing) {
+  const std::vector<DetectionBox> boxes{box(10, 5, 12, 8)};
+  const cv::Mat as_without = staticMask({40, 20}, boxes, {});
+  const cv::Mat unknown(20, 40, CV_8UC1, cv::Scalar(64));
+  for (const cv::Mat& motion : {unknown, stillMotion()}) {
+    const cv::Mat mask = staticMaskByMotion(motion, depthOf(2.0f), boxes, {});
+    EXPECT_EQ(cv::norm(mask, as_without, cv::NORM_INF), 0.0);
+  }
+  EXPECT_EQ(leftOut(staticMaskByMotion(unknown, depthOf(2.0f), {}, {})), 0);
+}
+
+TEST(StaticMaskByMotion, RefusesOtherImages) {
+  const cv::Mat depth = depthOf(2.0f);
+  EXPECT_THROW(staticMaskByMotion(cv::Mat(20, 40, CV_32SC1), depth, {}, {}), std::invalid_argument);
+  EXPECT_THROW(staticMaskByMotion(stillMotion(), depth.t(), {}, {}), std::invalid_argument);
+  EXPECT_THROW(staticMaskByMotion(cv::Mat(), cv::Mat(), {}, {}), std::invalid_argument);
+  StaticDepthOptions options;
+  options.room_behind = -0.1f;
+  EXPECT_THROW(staticMaskByMotion(stillMotion(), depth, {}, {}, options), std::invalid_argument);
+}
+
 TEST(WithoutLabels, LeavesOutTheLabelledPixelsWithTheMargin) {
   StaticDepthOptions options;
   options.box_margin = 2.0f;

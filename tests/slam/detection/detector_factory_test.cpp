@@ -35,7 +35,7 @@ cv::Mat noise(int rows, int columns) {
 
 TEST(DetectorFactory, AnUnknownTypeListsTheTypes) {
   EXPECT_TRUE(mentions(refusal(ofType("yolov9")),
-                       {"'yolov9'", "darknet, yolo, file, hog, motion, masks, none"}));
+                       {"'yolov9'", "darknet, yolo, file, command, hog, motion, masks, none"}));
 }
 
 TEST(DetectorFactory, AFileDetectorNeedsItsFile) {

@@ -246,7 +246,7 @@ struct OutlinedFrame {
 const OutlinedFrame kOutlined[] = {{0, {46, 207, 244, 479}, {358, 268, 598, 479}},
                                    {4, {42, 214, 236, 479}, {336, 291, 569, 479}}};
 
-double intersectionOverUnion(const DetectionBox& a, const DetectionBox& b) {
+double overlapOf(const DetectionBox& a, const DetectionBox& b) {
   const auto area = [](double width, double height) {
     return std::max(0.0, width) * std::max(0.0, height);
   };
@@ -266,8 +266,7 @@ void expectBothMen(const DetectorOptions& options) {
     for (const DetectionBox& man : {outlined.left_man, outlined.right_man}) {
       EXPECT_TRUE(std::any_of(boxes.begin(), boxes.end(),
                               [&](const DetectionBox& box) {
-                                return box.class_id == kPersonClassId &&
-                                       intersectionOverUnion(box, man) > 0.5;
+                                return box.class_id == kPersonClassId && overlapOf(box, man) > 0.5;
                               }))
           << "frame " << outlined.index << ", man at column " << man.x_min;
     }

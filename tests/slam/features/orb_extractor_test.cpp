@@ -140,22 +140,39 @@ TEST(OrbExtractor, FindsTheNumberWantedInsideTheImage) {
   }
 }
 
-TEST(OrbExtractor, PointsSurviveRotationAndScale) {
-  const cv::Mat image = test::texture({640, 480}, 2);
+class OrbExtractorUnderWarp : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(OrbExtractorUnderWarp, PointsAreFoundAndMatchedAgain) {
+  const auto [degrees, scale] = GetParam();
   OrbExtractor extractor;
-  const Features original = extractor.extract(image);
-  for (const auto& [degrees, scale] :
-       {std::pair(10.0, 1.0), std::pair(-45.0, 1.0), std::pair(90.0, 1.0), std::pair(137.0, 1.0),
-        std::pair(0.0, 0.8), std::pair(20.0, 1.25)}) {
+  const auto open_cv = cv::ORB::create(1000);
+  double share = 0.0;
+  double share_of_open_cv = 0.0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const cv::Mat image = test::texture({640, 480}, seed);
     const Warp warp = warped(image, degrees, scale);
-    const Features seen = extractor.extract(test::withNoise(warp.image, 2.0, 3));
-    EXPECT_GT(repeatability(original, seen, warp.map, image.size()), 0.7)
-        << degrees << " deg, scale " << scale;
+    const cv::Mat noisy = test::withNoise(warp.image, 2.0, 3);
+    const Features original = extractor.extract(image);
+    const Features seen = extractor.extract(noisy);
+    EXPECT_GT(repeatability(original, seen, warp.map, image.size()), 0.7) << "texture " << seed;
     const Matches matches = match(original, seen, warp.map);
-    EXPECT_GT(matches.pairs.size(), 300U) << degrees << " deg, scale " << scale;
-    EXPECT_GT(matches.shareWithin(4.0), 0.85) << degrees << " deg, scale " << scale;
+    EXPECT_GT(matches.pairs.size(), 300U) << "texture " << seed;
+    share += matches.shareWithin(4.0) / 3.0;
+
+    Features a;
+    Features b;
+    open_cv->detectAndCompute(image, {}, a.key_points, a.descriptors);
+    open_cv->detectAndCompute(noisy, {}, b.key_points, b.descriptors);
+    share_of_open_cv += match(a, b, warp.map).shareWithin(4.0) / 3.0;
   }
+  // OpenCV's points crowd at the strongest corners; ours are spread, so some are weaker.
+  EXPECT_GT(share, 0.9 * share_of_open_cv);
 }
+
+INSTANTIATE_TEST_SUITE_P(Warps, OrbExtractorUnderWarp,
+                         testing::Values(std::pair(10.0, 1.0), std::pair(-45.0, 1.0),
+                                         std::pair(90.0, 1.0), std::pair(137.0, 1.0),
+                                         std::pair(0.0, 0.8), std::pair(20.0, 1.25)));
 
 TEST(OrbExtractor, PlacesPointsBetweenThePixels) {
   const cv::Mat image = test::texture({640, 480}, 4);

@@ -15,8 +15,9 @@ inline cv::Mat texture(cv::Size size, std::uint64_t seed, int rectangles = 1500)
   cv::RNG random(seed);
   cv::Mat image(size, CV_8U, cv::Scalar(128));
   for (int i = 0; i < rectangles; ++i) {
-    const cv::Rect rectangle(random.uniform(-20, size.width), random.uniform(-20, size.height),
-                             random.uniform(4, 60), random.uniform(4, 60));
+    // Braces: in parentheses each compiler draws the four in an order of its own.
+    const cv::Rect rectangle{random.uniform(-20, size.width), random.uniform(-20, size.height),
+                             random.uniform(4, 60), random.uniform(4, 60)};
     cv::rectangle(image, rectangle, cv::Scalar(random.uniform(0, 256)), cv::FILLED);
   }
   cv::GaussianBlur(image, image, cv::Size(5, 5), 1.0);

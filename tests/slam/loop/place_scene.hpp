@@ -87,7 +87,7 @@ inline LoopKeyFrame see(const Landmarks& landmarks, std::size_t id,
     const Eigen::Vector2d pixel = kLens.project(p);
     const double u = pixel.x() + random.normal(noise.pixel);
     const double v = pixel.y() + random.normal(noise.pixel);
-    const double depth = p.z() + random.normal(noise.depth * DepthNoise{}.sigma(p.z()));
+    const double depth = p.z() + random.normal(noise.depth * depthNoise(p.z(), DepthErrorModel{}));
     if (u < 0.0 || v < 0.0 || u > 639.0 || v > 479.0) {
       continue;
     }

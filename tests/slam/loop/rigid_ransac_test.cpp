@@ -244,10 +244,11 @@ TEST(RigidRansac, APixelMayBeOffByThreeSigmaOfBoth) {
   EXPECT_FALSE(agrees(pair));
 }
 
-// At 2 m sigma is 0.001 + 1.425e-3 * 4 = 6.7 mm: sqrt(6.635 * 2) * 6.7 mm = 24.4 mm.
+// At 2 m the noise is 0.001 + 1.425e-3 * 4 = 6.7 mm, and what two views do not share 0.3 * 0.01 * 4
+// = 12 mm; together 13.7 mm: sqrt(6.635 * 2) * 13.7 mm = 50.1 mm.
 TEST(RigidRansac, ADepthMayBeOffByWhatTheSensorIs) {
   SightedPair pair = exactPair({0.3, 0.2, 2.0}, Eigen::Isometry3d::Identity());
-  pair.to.depth += 0.023;
+  pair.to.depth += 0.048;
   EXPECT_TRUE(agrees(pair));
   pair.to.depth += 0.004;
   EXPECT_FALSE(agrees(pair));

@@ -243,6 +243,27 @@ TEST(LoopClosing, WhatAKeyFrameThrewIsNotTheAnswerToARelocalization) {
   EXPECT_FALSE(loops.finish(tour.map));
 }
 
+TEST(LoopClosing, EachOfSeveralKeyFramesThatThrewIsHeardOf) {
+  LoopClosingOptions options;
+  options.detector.verification.radius = -1.0;
+  options.delay = 100;
+  MapTour tour(hall(77, 1500), kDrift);
+  LoopClosing loops(kLens, options);
+  while (tour.truth.size() < kFound + 2) {  // the last two find the loop, and throw
+    tour.step();
+    loops.process(tour.map);
+    if (tour.truth.size() <= kFound) {
+      EXPECT_EQ(finish(tour, loops), 0);
+    }
+  }
+  EXPECT_TRUE(loops.relocalize(tour.seenFrom(20), tour.map));
+  EXPECT_EQ(invalidArgumentOf([&] { loops.poll(tour.map); }),
+            "options.radius is -1.000000, expected finite and > 0");
+  EXPECT_EQ(invalidArgumentOf([&] { loops.finish(tour.map); }),
+            "options.radius is -1.000000, expected finite and > 0");
+  EXPECT_FALSE(loops.finish(tour.map));
+}
+
 TEST(LoopClosing, ARelocalizationThatThrowsIsOverAndDoneWith) {
   LoopClosingOptions options;
   options.relocalizer.pnp_iterations = 0;

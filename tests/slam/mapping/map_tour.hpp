@@ -30,7 +30,9 @@ inline Frame frameOf(const LoopKeyFrame& seen) {
     frame.features.key_points.back().class_id = seen.map_point[i];
   }
   frame.label.assign(seen.points.size(), PointLabel::kStatic);
+  frame.lambda.assign(seen.points.size(), 1.0f);
   frame.weight.assign(seen.points.size(), 1.0f);
+  frame.depth_spread.assign(seen.points.size(), 0.0f);
   frame.in_person.assign(seen.points.size(), 0);
   frame.map_point.assign(seen.points.size(), kNoMapPoint);
   return frame;

@@ -26,6 +26,7 @@ using test::moved;
 
 BundleOptions leastSquares() {
   BundleOptions options;
+  options.depth_error.systematic_quadratic = 0.0f;  // as the scene
   options.rounds = 1;
   options.plain_rounds = 1;
   options.max_iterations = 50;
@@ -83,7 +84,7 @@ struct Oracle {
       const auto row = static_cast<Eigen::Index>(3 * k);
       residuals(row) = o.u - (535.4 * p.x() / p.z() + 320.1);
       residuals(row + 1) = o.v - (539.2 * p.y() / p.z() + 247.6);
-      residuals(row + 2) = (z - p.z()) / (0.001 + 1.425e-3 * z * z);
+      residuals(row + 2) = (z - p.z()) / (double{0.001f} + double{1.425e-3f} * z * z);
     }
     return 0;
   }
@@ -199,6 +200,7 @@ TEST(BundleAdjustment, WeightsOfAHalfScaleTheCostByAQuarterAndLeaveTheMinimumAlo
   const BundleScene scene = makeBundleScene(15, 5, 60, 4, 1.0);
   BundleProblem problem = disturbed(scene.truth, 16, 0.005, 0.01);
   BundleOptions options;
+  options.depth_error.systematic_quadratic = 0.0f;  // its prior has no weight
   options.max_iterations = 50;
   options.function_tolerance = 1e-13;
   const BundleSolution whole = adjustBundle(problem, options);

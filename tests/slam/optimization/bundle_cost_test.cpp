@@ -16,8 +16,7 @@ namespace {
 
 constexpr double kStep = 1e-6;
 
-Eigen::VectorXd valueOf(const BundleCost& cost, const PoseVector& pose,
-                        const Eigen::Vector3d& point) {
+Eigen::VectorXd valueOf(const BundleCost& cost, const PoseVector& pose, const PointVector& point) {
   const std::array<const double*, 2> parameters{pose.data(), point.data()};
   Eigen::VectorXd residuals(cost.num_residuals());
   EXPECT_TRUE(cost.Evaluate(parameters.data(), residuals.data(), nullptr));
@@ -30,11 +29,12 @@ void expectDerivatives(const BundleObservation& observation, const Eigen::Vector
   const Eigen::Isometry3d isometry =
       test::moved(Eigen::Isometry3d::Identity(), {0.3, -0.5, 1.1}, {0.4, -0.2, 0.7});
   const PoseVector pose = toPoseVector(isometry);
-  const Eigen::Vector3d point = isometry.inverse() * in_camera;
+  PointVector point;
+  point << isometry.inverse() * in_camera, 0.012;  // depths 1.2 % too large at 1 m
 
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   RowMajor by_pose(cost.num_residuals(), kPoseSize);
-  RowMajor by_point(cost.num_residuals(), 3);
+  RowMajor by_point(cost.num_residuals(), kPointSize);
   const std::array<const double*, 2> parameters{pose.data(), point.data()};
   std::array<double*, 2> jacobians{by_pose.data(), by_point.data()};
   Eigen::VectorXd residuals(cost.num_residuals());
@@ -53,8 +53,8 @@ void expectDerivatives(const BundleObservation& observation, const Eigen::Vector
     EXPECT_LT((by_pose.col(k) - numeric).norm(), 1e-6 * (1.0 + numeric.norm())) << k;
   }
   EXPECT_EQ(by_pose.col(6).norm(), 0.0);
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
+  for (int k = 0; k < kPointSize; ++k) {
+    const PointVector step = kStep * PointVector::Unit(k);
     const Eigen::VectorXd numeric =
         (valueOf(cost, pose, point + step) - valueOf(cost, pose, point - step)) / (2.0 * kStep);
     EXPECT_LT((by_point.col(k) - numeric).norm(), 1e-6 * (1.0 + numeric.norm())) << k;
@@ -80,17 +80,41 @@ TEST(BundleCost, DerivativesBehindTheCamera) {
 
 TEST(BundleCost, ResidualByHand) {
   // 2 m deep, 0.2 m to the right: 100 px from the centre; seen at 103 with sigma 2: 1.5 sigma.
-  // sigma_z(2.1) = 0.001 + 1.425e-3 * 4.41 m.
+  // With an offset of 0.02 / m the depth 2 m is measured as 2.08 m, and seen is 2.1 m; sigma is
+  // given.
   BundleObservation observation;
   observation.u = 423.0f;
   observation.v = 240.0f;
   observation.sigma = 2.0f;
   observation.depth = 2.1f;
+  observation.depth_sigma = 0.01f;
   const BundleModel model{{1000.0, 1000.0, 320.0, 240.0}, 0.05};
-  const Eigen::Vector3d e = bundleResidual(measurementOf(observation, {}), model, {0.2, 0.0, 2.0});
+  const Eigen::Vector3d e =
+      bundleResidual(measurementOf(observation, {}), model, {0.2, 0.0, 2.0}, 0.02);
   EXPECT_NEAR(e.x(), 1.5, 1e-12);
   EXPECT_NEAR(e.y(), 0.0, 1e-12);
-  EXPECT_NEAR(e.z(), 0.1 / (0.001 + 1.425e-3 * 4.41), 1e-4);
+  EXPECT_NEAR(e.z(), 2.0, 1e-4);
+}
+
+TEST(BundleCost, ADepthWithoutASigmaOfItsOwnHasTheModels) {
+  BundleObservation observation;
+  observation.depth = 2.0f;
+  BundleOptions options;
+  options.depth_error = {0.001f, 0.002f, 0.0f, 0.01f, 0.3f};
+  // Noise 0.001 + 0.002 * 4 m = 9 mm; 0.3 of the systematic 40 mm: 12 mm; together 15 mm.
+  EXPECT_NEAR(measurementOf(observation, options).inverse_sigma.z(), 1.0 / 0.015, 1e-4);
+}
+
+TEST(DepthOffsetPrior, IsTheOffsetInStandardDeviations) {
+  const DepthOffsetPrior prior(0.01);
+  const PointVector point(1.0, 2.0, 3.0, -0.025);
+  const double* parameters = point.data();
+  double residual = 0.0;
+  PointVector derivative;
+  double* jacobian = derivative.data();
+  ASSERT_TRUE(prior.Evaluate(&parameters, &residual, &jacobian));
+  EXPECT_DOUBLE_EQ(residual, -2.5);
+  EXPECT_EQ(derivative, PointVector(0.0, 0.0, 0.0, 100.0));
 }
 
 TEST(Se3Manifold, MinusUndoesPlus) {

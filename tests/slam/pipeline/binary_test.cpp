@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hmcdyn_slam as a user meets it: a process with exit codes and messages.
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -62,6 +63,21 @@ TEST_F(Binary, DarknetWithoutWeightsNamesTheOption) {
   const Outcome outcome = runBinary(toyArguments() + " --detector darknet --model a.cfg");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.text.find("--weights"), std::string::npos) << outcome.text;
+}
+
+TEST_F(Binary, MasksOfAFilterThatMakesNoneAreAMistakeOfUsage) {
+  const Outcome outcome = runBinary(toyArguments() + " --filter none --write-masks");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(hmcdyn::test::mentions(outcome.text, {"--write-masks", "--filter none", "robust"}));
+  EXPECT_EQ(runBinary(toyArguments() + " --filter hmc --write-static-depth").exit_code, 2);
+}
+
+TEST_F(Binary, MasksAndStaticDepthAreWrittenOnRequest) {
+  const Outcome outcome = runBinary(toyArguments() + " --write-masks --write-static-depth");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  const std::string name = test::toyStamp(7) + ".png";
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "masks" / name));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "static_depth" / name));
 }
 
 TEST_F(Binary, BadDataExitsWithOneAndNamesTheFile) {

@@ -3,6 +3,7 @@
 // the test wants.
 #include "slam/pipeline/detection_feed.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -257,6 +258,7 @@ TEST_F(Feed, RegionsThatMoveNeedNoDetectorAndNoAsking) {
   ASSERT_EQ(taken.boxes.size(), 1U);
   const float middle = 0.5f * (taken.boxes[0].x_min + taken.boxes[0].x_max);
   EXPECT_NEAR(middle, 2.0f * (static_cast<float>(leftAt(7)) + 39.5f), 9.0f);
+  EXPECT_EQ(std::count(taken.found.begin(), taken.found.end(), '\n'), 1) << taken.found;
 }
 
 TEST_F(Feed, ADetectorThatIsNotKnownIsRefused) {

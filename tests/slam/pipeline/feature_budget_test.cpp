@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <hmcdyn/frame_filter.hpp>
+
 namespace hmcdyn::slam {
 namespace {
 
@@ -29,6 +31,37 @@ TEST(FeatureBudget, LeavesAsManyOutsideTheBoxesAsThereWereWithoutBoxes) {
   EXPECT_EQ(featureBudget(1000, 0.5, 2.5), 2000);  // half of 2000 lie outside
   EXPECT_EQ(featureBudget(1000, 0.9, 2.5), 2500);  // up to the factor
   EXPECT_EQ(featureBudget(1000, 1.0, 1.0), 1000);
+}
+
+/// A mask of 60 x 40 px whose first columns move.
+MotionMask firstColumnsMove(int columns) {
+  MotionMask mask;
+  mask.label = cv::Mat::zeros(40, 60, CV_8U);
+  mask.label.colRange(0, columns).setTo(static_cast<int>(MaskLabel::kMoving));
+  mask.moving_share = static_cast<float>(columns) / 60.0f;
+  return mask;
+}
+
+TEST(CornersOfRoom, AreEverywhereWhileLittleMoves) {
+  EXPECT_TRUE(cornersOfRoom({}, firstColumnsMove(10)).empty());
+  const cv::Mat corners(40, 60, CV_8U, cv::Scalar(1));
+  EXPECT_EQ(cv::countNonZero(cornersOfRoom(corners, firstColumnsMove(10))), 60 * 40);
+}
+
+TEST(CornersOfRoom, AreNotOnWhatMovesButForItsRim) {
+  // Given 30 columns that move: their last 6 may have moved on, the image's border has not
+  EXPECT_EQ(cv::countNonZero(cornersOfRoom({}, firstColumnsMove(30))), (60 - 24) * 40);
+}
+
+TEST(CornersOfRoom, AreAmongThoseThatWereAllowed) {
+  cv::Mat corners = cv::Mat::zeros(40, 60, CV_8U);
+  corners.rowRange(0, 10).setTo(255);
+  EXPECT_EQ(cv::countNonZero(cornersOfRoom(corners, firstColumnsMove(30))), (60 - 24) * 10);
+}
+
+TEST(CornersOfRoom, OfAMaskOfAnotherSizeAreAsTheyWere) {
+  const cv::Mat corners(20, 30, CV_8U, cv::Scalar(1));
+  EXPECT_EQ(cornersOfRoom(corners, firstColumnsMove(30)).size(), corners.size());
 }
 
 TEST(FeatureBudget, RefusesWhatCannotBe) {

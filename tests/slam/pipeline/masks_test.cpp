@@ -17,10 +17,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "dataset/temporary_folder.hpp"
+#include "pipeline/rendered_sequence.hpp"
 #include "slam/pipeline/detection_feed.hpp"
 #include "slam/pipeline/options.hpp"
 #include "slam/pipeline/run.hpp"
-#include "synthesize/sequence.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -35,18 +35,15 @@ class MaskedRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new hmcdyn::test::TemporaryFolder();
-    synthesize::SequenceOptions options;
-    options.scene = "crowd";
-    options.frames = kFrames;
-    options.output = folder_->path() / "crowd";
-    synthesize::writeSequence(options, {});
+    sequence_ = hmcdyn::test::renderedSequence(folder_->path(), "crowd", kFrames,
+                                               synthesize::NoiseModel::kKinect);
   }
   static void TearDownTestSuite() {
     delete folder_;
     folder_ = nullptr;
   }
 
-  static std::filesystem::path sequence() { return folder_->path() / "crowd"; }
+  static const std::filesystem::path& sequence() { return sequence_; }
 
   static SlamOptions masked() {
     SlamOptions options;
@@ -111,8 +108,10 @@ class MaskedRun : public testing::Test {
   }
 
   static hmcdyn::test::TemporaryFolder* folder_;
+  static std::filesystem::path sequence_;
 };
 hmcdyn::test::TemporaryFolder* MaskedRun::folder_ = nullptr;
+std::filesystem::path MaskedRun::sequence_;
 
 TEST_F(MaskedRun, TheRendererMasksAreReadAndPointsOffThemStayInTheMap) {
   const nlohmann::json summary = runSlam(masked());

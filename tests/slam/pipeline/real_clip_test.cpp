@@ -23,7 +23,7 @@ nlohmann::json runClip(FilterRule rule, const std::filesystem::path& output) {
   options.detector.model = hmcdyn::test::sharedPath(kModel);
   options.detector.weights = hmcdyn::test::sharedPath(kWeights);
   options.detector.classes = {kPersonClassId};
-  options.filter.filter.stage.rule = rule;
+  options.filter.rule = rule;
   options.output = output;
   options.quiet = true;
   return runSlam(options);

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/temporary_folder.hpp"
+#include "pipeline/rendered_sequence.hpp"
 #include "slam/pipeline/options.hpp"
 #include "slam/pipeline/run.hpp"
-#include "synthesize/sequence.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -22,7 +22,7 @@ class Rendered : public testing::Test {
     options.camera = (sequence / "calibration.yaml").string();
     options.detector.type = "file";
     options.detector.boxes = sequence / "boxes.txt";
-    options.filter.filter.stage.rule = rule;
+    options.filter.rule = rule;
     options.output = folder_.path() / "out";
     options.quiet = true;
     const nlohmann::json summary = runSlam(options);
@@ -31,13 +31,9 @@ class Rendered : public testing::Test {
   }
 
   std::filesystem::path render(const std::string& scene, int frames, bool noise) const {
-    synthesize::SequenceOptions options;
-    options.scene = scene;
-    options.frames = frames;
-    options.output = folder_.path() / scene;
-    options.noise = noise ? synthesize::NoiseModel::kKinect : synthesize::NoiseModel::kNone;
-    synthesize::writeSequence(options, {});
-    return options.output;
+    return hmcdyn::test::renderedSequence(
+        folder_.path(), scene, frames,
+        noise ? synthesize::NoiseModel::kKinect : synthesize::NoiseModel::kNone);
   }
 
   hmcdyn::test::TemporaryFolder folder_;

@@ -78,10 +78,30 @@ TEST_F(Run, KeyPointsAndPicturesAreWrittenOnRequest) {
 }
 
 TEST_F(Run, AFilterWithNothingToDoSaysSo) {
-  const nlohmann::json summary = runSlam(optionsFor({}));
+  SlamOptions options = optionsFor({});
+  options.filter.rule = FilterRule::kBox;
+  const nlohmann::json summary = runSlam(options);
   ASSERT_EQ(summary.at("warnings").size(), 1U);
   EXPECT_EQ(summary.at("warnings").front(),
-            "the filter 'hmc' had nothing to do: there is no detector (--detector none)");
+            "the filter 'box' had nothing to do: there is no detector (--detector none)");
+}
+
+TEST_F(Run, TheRobustFilterNeedsNoDetectorToHaveSomethingToDo) {
+  const nlohmann::json summary = runSlam(optionsFor({}));
+  EXPECT_TRUE(summary.at("warnings").empty()) << summary.at("warnings");
+  EXPECT_EQ(summary.at("counts").at("motion_masks").at("good"), 7);
+}
+
+TEST_F(Run, ADetectorThatFindsNothingIsReportedAllTheSame) {
+  SlamOptions options = optionsFor({});
+  options.detector.type = "file";
+  options.detector.boxes = folder_.write("boxes.txt", "1000.0 chair 40 60 119 179 0.8\n");
+  options.detector.classes = {0};
+  const nlohmann::json summary = runSlam(options);
+  ASSERT_FALSE(summary.at("warnings").empty());
+  EXPECT_TRUE(hmcdyn::test::mentions(
+      summary.at("warnings").back().get<std::string>(),
+      {"without a box, only the motion mask spoke", "1 are of other classes than --classes"}));
 }
 
 TEST_F(Run, BoxesFromAFileReachTheFilter) {
@@ -97,6 +117,24 @@ TEST_F(Run, BoxesFromAFileReachTheFilter) {
   EXPECT_EQ(summary.at("counts").at("boxes"), 8);
   EXPECT_EQ(summary.at("counts").at("dynamic_boxes"), 0);  // nothing in them moves
   EXPECT_TRUE(summary.at("warnings").empty());
+}
+
+TEST_F(Run, BoxesThatWereFoundAreWrittenAndReadAgain) {
+  SlamOptions options = optionsFor({});
+  options.max_frames = 3;
+  options.write_boxes = true;
+  options.detector.type = "file";
+  options.detector.boxes = folder_.path() / "boxes.txt";
+  std::ofstream(options.detector.boxes)
+      << "1000.000000 person 100 50 200 200 0.9\n1000.066667 0 10.5 20.25 30 40 0.75\n";
+  runSlam(options);
+  EXPECT_EQ(contentOf(options.output / "boxes.txt"),
+            "# timestamp class x_min y_min x_max y_max score\n"
+            "1000 0 100 50 200 200 0.9\n1000.066667 0 10.5 20.25 30 40 0.75\n");
+  options.detector.boxes = options.output / "boxes.txt";
+  options.output = folder_.path() / "again";
+  runSlam(options);
+  EXPECT_EQ(contentOf(options.output / "boxes.txt"), contentOf(options.detector.boxes));
 }
 
 TEST_F(Run, ATruncatedPictureIsLeftOutAndCounted) {

@@ -14,23 +14,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "drawn_texture.hpp"
+
 namespace hmcdyn::slam::test {
 
-/// Blobs of several sizes that corners are found on.
-inline cv::Mat makeTexture(cv::Size size, std::uint64_t seed) {
-  cv::RNG random(seed);
-  cv::Mat texture = cv::Mat::zeros(size, CV_32F);
-  for (const double blur : {1.5, 3.0, 6.0}) {
-    cv::Mat noise(size, CV_32F);
-    random.fill(noise, cv::RNG::NORMAL, 0.0, 45.0 * blur);
-    cv::GaussianBlur(noise, noise, cv::Size(), blur);
-    texture += noise;
-  }
-  cv::Mat gray;
-  texture += 128.0;
-  texture.convertTo(gray, CV_8U);
-  return gray;
-}
+using hmcdyn::test::makeTexture;
 
 /// A sequence in TUM format with exact truth: a camera with f = 300 px that moves to the right past
 /// a wall of horizontal slabs, each at its own depth; 320x240 px, 30 frames a second.

@@ -153,5 +153,15 @@ TEST(WithGroundTruth, AlignsPositionsAndFillsInErrors) {
   EXPECT_EQ(frames[2].truth, Eigen::Vector3d(2.2, 5.0, 0.0));
 }
 
+TEST(Report, OfALongRunTheCountsAreTheSummarys) {
+  ReportInput input = sampleRun(100);
+  EXPECT_EQ(renderReport(input).find("this page remembers"), std::string::npos);
+  input.frames_in_all = 100000;
+  input.summary = {{"counts", {{"frames_tracked", 99123}}}};
+  const std::string page = renderReport(input);
+  EXPECT_NE(page.find("99123 <small>of 100000</small>"), std::string::npos);
+  EXPECT_NE(page.find("Of 100000 frames this page remembers 100,"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hmcdyn::slam

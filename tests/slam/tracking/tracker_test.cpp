@@ -111,6 +111,27 @@ TEST(Tracker, PointsOfWeightZeroDoNotMoveTheCamera) {
   EXPECT_LT(distanceBetween(result.camera_from_world, movedBy(0.01, 0.0)), 0.002);
 }
 
+// The filter drops all but ten points, which are too few. Those that the map has long trusted are
+// matched all the same, and nine of ten stand still.
+TEST(Tracker, WhereTheFilterLeavesTooFewTheMapHasTheWord) {
+  const Room room(6);
+  Tracker tracker(kCamera, {});
+  for (std::size_t k = 0; k < 6; ++k) {
+    ASSERT_EQ(tracker.track(room.see(k, movedBy(0.01 * static_cast<double>(k), 0.0))).failure,
+              TrackingFailure::kNone);
+  }
+  Frame frame = room.see(6, movedBy(0.06, 0.0));
+  for (std::size_t i = 10; i < frame.points.size(); ++i) {
+    frame.points.u[i] += i % 10 == 0 ? 8.0f : 0.0f;
+    frame.weight[i] = 0.0f;
+    frame.label[i] = PointLabel::kDynamic;
+  }
+  const TrackingResult result = tracker.track(frame);
+  ASSERT_EQ(result.failure, TrackingFailure::kNone);
+  EXPECT_GT(result.inliers, frame.points.size() / 2);
+  EXPECT_LT(distanceBetween(result.camera_from_world, movedBy(0.06, 0.0)), 0.002);
+}
+
 /// RMSE (m) of a camera that moves steadily and sees 80 points with 1 px of noise.
 double errorWithNoise(bool fuse_motion) {
   const Room room(10, 80);
@@ -143,12 +164,12 @@ TEST(Tracker, MotionLessensTheNoiseOfFewPoints) {
 
 /// Points of the map after a camera has panned away and back, several times, over 300 points of a
 /// room; every frame is a key frame, and the local map holds four of them.
-std::size_t pointsAfterPanning(int forgotten_after) {
+std::size_t pointsAfterPanning(const DuplicateOptions& duplicates) {
   const Room room(9);
   TrackerOptions options;
-  options.key_frames.max_interval = 1;
+  options.key_frames.max_turn = 0.0;  // every frame is a key frame
   options.map.local_key_frames = 4;
-  options.forgotten_after = forgotten_after;
+  options.duplicates = duplicates;
   Tracker tracker(kCamera, options);
   constexpr int kHalfPan = 30;  // frames
   for (int k = 0; k < 6 * kHalfPan; ++k) {
@@ -163,10 +184,17 @@ std::size_t pointsAfterPanning(int forgotten_after) {
 }
 
 TEST(Tracker, APlaceThatIsSeenAgainIsNotMappedAgain) {
-  constexpr int kAsTheLocalMap = 4;  // key frames
-  EXPECT_LE(pointsAfterPanning(kAsTheLocalMap), 330U) << "a tenth more than there are";
+  DuplicateOptions forgotten;
+  forgotten.neighbours = 0;
+  forgotten.forgotten_after = 4;  // key frames, as many as the local map has
+  EXPECT_LE(pointsAfterPanning(forgotten), 330U) << "a tenth more than there are";
   constexpr int kNever = 1000;
-  EXPECT_GT(pointsAfterPanning(kNever), 400U) << "the test does not tell";
+  DuplicateOptions shared;
+  shared.forgotten_after = kNever;
+  EXPECT_LE(pointsAfterPanning(shared), 330U) << "neighbours find them, too";
+  DuplicateOptions none = shared;
+  none.neighbours = 0;
+  EXPECT_GT(pointsAfterPanning(none), 400U) << "the test does not tell";
 }
 
 TEST(Map, PeopleAndUncertainPointsStayOut) {
@@ -178,9 +206,9 @@ TEST(Map, PeopleAndUncertainPointsStayOut) {
   frame.label[1] = PointLabel::kDynamic;    // moves
   frame.label[2] = PointLabel::kUnmatched;  // nobody knows
   frame.label[3] = PointLabel::kSuspect;    // little deeper than the person
-  frame.weight[3] = 0.7f;
+  frame.lambda[3] = 0.7f;
   frame.label[4] = PointLabel::kSuspect;  // background seen past the person
-  frame.weight[4] = 0.9f;
+  frame.lambda[4] = 0.9f;
   Map map(kCamera, {});
   map.insertKeyFrame(frame);
   const std::vector<int>& entered = map.keyFrames().back().frame.map_point;

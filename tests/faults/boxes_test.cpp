@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Kind 2: boxes that cannot be boxes are refused or counted by rule, with a guess of what they are.
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fault_input.hpp"
+#include "slam/detection/box_plausibility.hpp"
+#include "slam/detection/file_detector.hpp"
+
+namespace hmcdyn::faults {
+namespace {
+
+using hmcdyn::test::mentions;
+using hmcdyn::test::messageOf;
+using slam::BoxReview;
+
+class Boxes : public testing::Test {
+ protected:
+  /// Frames of 640 x 480 px from 1000 s on, 30 a second for 2 s; people are asked for.
+  Boxes() {
+    options_.classes = {0};
+    options_.frames.image = {640, 480};
+    for (int k = 0; k < 60; ++k) {
+      options_.frames.times.push_back(1000.0 + k / 30.0);
+    }
+  }
+
+  BoxReview review(const std::string& text) const {
+    const std::filesystem::path file = folder_.write("boxes.txt", text);
+    return slam::reviewBoxes(slam::readBoxFile(file), options_, file);
+  }
+  std::string refusal(const std::string& text) const {
+    return messageOf<std::runtime_error>([&] { review(text); });
+  }
+
+  slam::DetectorOptions options_;
+  hmcdyn::test::TemporaryFolder folder_;
+};
+
+TEST_F(Boxes, AFileOfOtherBoxesIsRefusedWithAGuess) {
+  struct Kind {
+    const char* what;
+    const char* text;
+    std::vector<std::string> said;
+  };
+  const std::vector<Kind> kinds{
+      {"x y width height",
+       "1000.0 person 300 200 100 250 0.9\n1000.033333 person 310 210 110 240 0.9\n",
+       {"2 of 2 lines", "x y width height"}},
+      {"some of them are not inverted",
+       "1000 person 300 200 100 250 1\n1000 person 20 30 90 200 1\n1000 person 310 40 90 200 1\n",
+       {"2 of 3 lines", "x y width height"}},
+      {"centre and size, too large for a corner",
+       "1000.0 person 500 300 180 320 0.9\n1000.1 person 540 320 160 300 0.9\n",
+       {"centre and size"}},
+      {"corners in another order",
+       "1000.0 person 600 470 300 200 0.9\n1000.1 person 610 460 310 210 0.9\n",
+       {"x_max y_max x_min y_min"}},
+      {"shares", "1000.0 person 0.3 0.2 0.5 0.9 0.9\n", {"shares of the image", "640 and 480"}},
+      {"YOLO's shares", "1000.0 0 0.6 0.5 0.2 0.4 0.9\n", {"shares", "centre and size"}},
+      {"another image", "1000.0 person 1200 700 1500 900 0.9\n", {"another size than 640 x 480"}},
+      {"another clock", "12.0 person 10 20 90 200 0.9\n", {"no box is at a frame's time", "12.0"}},
+      {"between the frames",
+       "1001.9 person 10 20 90 200 0.9\n1002.5 person 10 20 90 200 0.9\n",
+       {}},
+      {"after the last frame", "1002.1 person 10 20 90 200 0.9\n", {"no box is within 0.02 s"}},
+  };
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(kind.what);
+    if (kind.said.empty()) {
+      EXPECT_EQ(review(kind.text).kept.size(), 1U);
+      continue;
+    }
+    const std::string message = refusal(kind.text);
+    EXPECT_TRUE(mentions(message, {"boxes.txt"}));
+    for (const std::string& part : kind.said) {
+      EXPECT_TRUE(mentions(message, {part}));
+    }
+  }
+}
+
+TEST_F(Boxes, EachRuleThatLeavesOutABoxIsCounted) {
+  const BoxReview boxes = review(
+      "1000.0 person 10 20 90 200 0.9\n"
+      "1000.1 person 10 20 90 200 0.9\n"
+      "1000.2 person 10 20 90 200 0.9\n"
+      "1000.3 person 90 20 10 200 0.9\n"
+      "1000.3 person 0.1 0.1 0.5 0.9 0.9\n"
+      "1000.4 person 700 20 800 200 0.9\n"
+      "1000.5 chair 10 20 90 200 0.9\n"
+      "1000.5 bicycle 10 20 90 200 0.1\n"
+      "1000.6 person 10 20 90 200 0.2\n"
+      "1099.0 person 10 20 90 200 0.9\n");
+  EXPECT_EQ(boxes.counts.in_file, 10U);
+  EXPECT_EQ(boxes.counts.kept, 3U);
+  EXPECT_EQ(boxes.kept.size(), 3U);
+  EXPECT_EQ(boxes.counts.inverted, 1U);
+  EXPECT_EQ(boxes.counts.shares, 1U);
+  EXPECT_EQ(boxes.counts.outside, 1U);
+  EXPECT_EQ(boxes.counts.other_class, 2U);
+  EXPECT_EQ(boxes.counts.low_score, 1U);
+  EXPECT_EQ(boxes.counts.other_time, 1U);
+  EXPECT_TRUE(oneMentions(boxes.notes, {"7 of 10 boxes are left out", "1 outside the image",
+                                        "2 of classes", "1 with a score below"}));
+}
+
+TEST_F(Boxes, NothingIsSaidOfAFileWithBoxesOfOtherThingsAsDetectorsWriteThem) {
+  EXPECT_TRUE(review("1000.0 person 10 20 90 200 0.9\n1000.0 chair 1 2 30 40 0.1\n").notes.empty());
+  EXPECT_TRUE(review("").notes.empty());
+}
+
+TEST_F(Boxes, WhereNoneIsLeftTheRuleAndTheFilesClassesAreNamed) {
+  EXPECT_TRUE(oneMentions(review("1000.0 1 10 20 90 200 0.9\n").notes,
+                          {"1 of 1 boxes", "1 of classes", "1 (bicycle)"}));
+  EXPECT_TRUE(oneMentions(review("1000.0 0 10 20 90 200 0.2\n").notes,
+                          {"1 with a score below --score-threshold 0.25"}));
+}
+
+TEST_F(Boxes, FrameNumbersAndBoxesOfALargerImageAreNamed) {
+  std::string numbers;
+  std::string larger;
+  for (int k = 0; k < 30; ++k) {
+    numbers += fmt::format("{} person 10 20 90 200 0.9\n", k);
+    larger += fmt::format("{:.6f} person 500 300 900 800 0.9\n", 1000.0 + k / 30.0);
+  }
+  EXPECT_TRUE(mentions(refusal(numbers), {"no box is at a frame's time", "frame numbers"}));
+  EXPECT_TRUE(oneMentions(review(larger).notes, {"30 of 30 boxes", "640 x 480", "another size"}));
+}
+
+TEST_F(Boxes, PeopleThatLieInEveryFrameMayBeCornersWithYFirst) {
+  const auto inFrames = [](const char* corners) {
+    std::string text;
+    for (int k = 0; k < 6; ++k) {
+      text += fmt::format("{:.6f} person {} 0.9\n", 1000.0 + k / 30.0, corners);
+    }
+    return text;
+  };
+  EXPECT_TRUE(oneMentions(review(inFrames("60 250 470 420")).notes,
+                          {"6 of the 6 boxes of people", "y_min x_min y_max x_max"}));
+  EXPECT_TRUE(review(inFrames("250 60 420 470")).notes.empty());
+  EXPECT_TRUE(review(inFrames("20 250 620 420")).notes.empty());  // not below 480 px with y first
+}
+
+TEST_F(Boxes, StampsInAnotherUnitAreThoseOfTheFramesTheyFit) {
+  for (const char* stamp : {"1000100", "1000100000", "1000100000000"}) {
+    const BoxReview boxes = review(std::string(stamp) + " person 10 20 90 200 0.9\n");
+    ASSERT_EQ(boxes.kept.size(), 1U) << stamp;
+    EXPECT_NEAR(boxes.kept[0].timestamp, 1000.1, 1e-6);
+    EXPECT_TRUE(oneMentions(boxes.notes, {"fits the frames"}));
+  }
+}
+
+TEST_F(Boxes, ALineOfAnotherFormatIsNamedWithAGuess) {
+  struct Kind {
+    const char* text;
+    std::vector<std::string> said;
+  };
+  for (const Kind& kind : std::vector<Kind>{
+           {"1000.0 10 20 90 200 0.9\n", {"boxes.txt:1: 6 fields", "class missing"}},
+           {"0 0.5 0.5 0.2 0.4\n", {"boxes.txt:1: 5 fields", "YOLO"}},
+           {"1000.0 person 10 20 90 200\n", {"boxes.txt:1: 6 fields", "score missing"}},
+           {"1,-1,794,247,71,174,1,-1,-1,-1\n", {"boxes.txt:1:", "MOT"}},
+           {"1000.0 person 10 20 90 200 95\n", {"boxes.txt:1: score is 95", "per cent"}},
+           {"rgb/1.png person 10 20 90 200 1\n", {"boxes.txt:1: timestamp is 'rgb/1.png'"}}}) {
+    const std::string message = refusal(kind.text);
+    for (const std::string& part : kind.said) {
+      EXPECT_TRUE(mentions(message, {part}));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hmcdyn::faults

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Kind 10, and the same care in every program, as a user meets them: processes with exit codes.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fault_input.hpp"
+#include "pipeline/shell.hpp"
+
+namespace hmcdyn::faults {
+namespace {
+
+using hmcdyn::test::mentions;
+using slam::test::Outcome;
+using slam::test::runShell;
+
+TEST(Options, NumbersThatCannotBeAreRefusedByName) {
+  struct Case {
+    const char* program;
+    const char* arguments;
+    const char* said;
+  };
+  for (const Case& entry : std::vector<Case>{
+           {HMCDYN_SLAM, "--output o --dataset d --max-depth nan", "--max-depth"},
+           {HMCDYN_SLAM, "--output o --dataset d --max-depth 0",
+            "--max-depth: is 0; expected a number above 0"},
+           {HMCDYN_SLAM, "--output o --dataset d --bridge=-1",
+            "--bridge: is -1; expected 0 or more"},
+           {HMCDYN_SLAM, "--output o --dataset d --baselines 0,nan", "--baselines"},
+           {HMCDYN_SLAM, "--output o --dataset d --time-unit hours", "--time-unit"},
+           {HMCDYN_EVALUATE, "ate -g a -e b --offset nan", "--offset"},
+           {HMCDYN_SYNTHESIZE, "--output o --moving-speed nan", "--moving-speed"},
+       }) {
+    const Outcome outcome = runShell(std::string(entry.program) + " " + entry.arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << entry.arguments << "\n" << outcome.text;
+    EXPECT_TRUE(mentions(outcome.text, {entry.said}));
+  }
+}
+
+class Programs : public testing::Test {
+ protected:
+  static std::string poses(const std::string& unit_zeros) {
+    std::string text;
+    for (int i = 0; i < 20; ++i) {
+      text += std::to_string(1341846400 + i) + unit_zeros + " " + std::to_string(i % 5) + " " +
+              std::to_string(i % 3) + " 0 0 0 0 1\n";
+    }
+    return text;
+  }
+  Outcome evaluate(const std::string& truth, const std::string& estimate) const {
+    return runShell(std::string(HMCDYN_EVALUATE) + " ate -g " +
+                    folder_.write("truth.txt", truth).string() + " -e " +
+                    folder_.write("estimate.txt", estimate).string());
+  }
+
+  hmcdyn::test::TemporaryFolder folder_;
+};
+
+TEST_F(Programs, TheEvaluationFindsOutTheUnitsOfBothFiles) {
+  const Outcome outcome = evaluate(poses("000000000"), poses("000"));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_TRUE(mentions(outcome.text, {"nanoseconds", "estimate.txt", "fits the ground truth"}));
+}
+
+TEST_F(Programs, TheEvaluationSaysWhatItLeftOutAndHowFewItIsOf) {
+  const Outcome outcome = evaluate(poses(""), poses("") +
+                                                  "1341846500 1 1 0 0 0 0 1\n"
+                                                  "1341846501 nan nan nan 0 0 0 0\n");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_TRUE(mentions(outcome.text, {"1 of 22 lines are left out"}));
+}
+
+TEST_F(Programs, ATableOfRunsNamesASummaryThatIsNone) {
+  const Outcome outcome =
+      runShell(std::string(HMCDYN_TABLES) + " --check " +
+               folder_.write("summary.json", "\xEF\xBB\xBF{\"counts\":").string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(mentions(outcome.text, {"summary.json"}));
+}
+
+TEST_F(Programs, LabelsAreScoredFromFilesWithOtherLineEnds) {
+  const std::string csv =
+      "\xEF\xBB\xBFtimestamp,u,v,depth,distance,cluster,label,weight\r\n"
+      "1.000000,5,5,1,0,0,static,1\r\n";
+  folder_.write("scene/boxes.txt", "\xEF\xBB\xBF# boxes\r\n1.000000\tperson\t1\t1\t9\t9\t1\r\n");
+  const Outcome outcome =
+      runShell(std::string(HMCDYN_LABEL_SCORE) + " " + (folder_.path() / "scene").string() + ":" +
+               folder_.write("keypoints.csv", csv).string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(mentions(outcome.text, {"mask", "no mask for any time stamp"}));  // all else was read
+}
+
+}  // namespace
+}  // namespace hmcdyn::faults
