@@ -165,6 +165,11 @@ struct FrameFilterResult {
   std::vector<DetectionBox>
       boxes;                ///< The boxes that were judged: the detector's, then bridged ones.
   std::size_t bridged = 0;  ///< How many of these the detector missed.
+  /// Where the filter itself finds the camera, for a front end that finds too little of its map:
+  /// the pose of an earlier frame and the motion since then of points with depth that are believed
+  /// to be at rest. In the world of setPose(), else in that of the first frame; nothing where the
+  /// motion or the world is unknown.
+  std::optional<Pose> camera_from_world;
   DynamicFeatureFilterResult details;  ///< Distances, clusters, beliefs, models.
 };
 

@@ -146,6 +146,9 @@ FrameFilterResult FrameFilter::Memory::filter(const FrameInput& frame,
   } else if (result.details.camera_unknown) {
     result.status = FrameFilterStatus::kCameraUnknown;
   }
+  if (current.camera_from_world && history.inCallersWorld()) {
+    result.camera_from_world = Pose(*current.camera_from_world);
+  }
   current.belief = result.details.belief;
   history.add(std::move(current));
   result.boxes =

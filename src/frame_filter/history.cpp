@@ -71,6 +71,7 @@ std::optional<Eigen::Isometry3d> FrameHistory::setPose(double timestamp,
   }
   found->camera_from_world = camera_from_world;
   found->pose_is_given = true;
+  in_callers_world_ = true;
   if (given_before || found == frames_.begin() || std::next(found) != frames_.end()) {
     return std::nullopt;
   }
@@ -83,7 +84,7 @@ std::optional<Eigen::Isometry3d> FrameHistory::setPose(double timestamp,
 
 std::optional<Eigen::Isometry3d> FrameHistory::poseFrom(
     const std::vector<const RememberedFrame*>& past,
-    const std::vector<EarlierFrameReport>& reports) const {
+    const std::vector<EarlierFrameReport>& reports) {
   for (std::size_t k = 0; k < reports.size(); ++k) {
     if (reports[k].current_from_earlier && past[k]->camera_from_world) {
       return Eigen::Isometry3d(*reports[k].current_from_earlier) * *past[k]->camera_from_world;
@@ -92,7 +93,11 @@ std::optional<Eigen::Isometry3d> FrameHistory::poseFrom(
   const bool nobody = std::none_of(
       frames_.begin(), frames_.end(),
       [](const RememberedFrame& frame) { return frame.camera_from_world.has_value(); });
-  return nobody ? std::optional(Eigen::Isometry3d::Identity()) : std::nullopt;
+  if (!nobody) {
+    return std::nullopt;
+  }
+  in_callers_world_ = in_callers_world_ && frames_.empty();
+  return Eigen::Isometry3d::Identity();
 }
 
 std::optional<Eigen::Isometry3d> FrameHistory::predict(double timestamp) const {

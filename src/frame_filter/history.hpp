@@ -48,10 +48,14 @@ class FrameHistory {
   /// Where the camera is expected: on from the last two poses as between them.
   std::optional<Eigen::Isometry3d> predict(double timestamp) const;
 
-  /// Where the filter itself finds the camera of a frame that was compared with `past`; in a world
-  /// of its own where nobody has told.
+  /// Where the filter itself finds the camera of a frame that was compared with `past`; where no
+  /// pose at all is known, a new world begins with it.
   std::optional<Eigen::Isometry3d> poseFrom(const std::vector<const RememberedFrame*>& past,
-                                            const std::vector<EarlierFrameReport>& reports) const;
+                                            const std::vector<EarlierFrameReport>& reports);
+
+  /// Whether poses are in the world of setPose() or, before that, of the first frame; not in one
+  /// that began later.
+  bool inCallersWorld() const noexcept { return in_callers_world_; }
 
   /// The camera of the next frame as RememberedFrame::odometry has it; nothing where the last
   /// frame has no pose to go on from.
@@ -60,11 +64,15 @@ class FrameHistory {
   /// @return the frame's odometry, if it is the last one and its pose was not given before.
   std::optional<Eigen::Isometry3d> setPose(double timestamp,
                                            const Eigen::Isometry3d& camera_from_world);
-  void clear() noexcept { frames_.clear(); }
+  void clear() noexcept {
+    frames_.clear();
+    in_callers_world_ = true;
+  }
 
  private:
   std::vector<double> baselines_;
   std::deque<RememberedFrame> frames_;  ///< Oldest first.
+  bool in_callers_world_ = true;
 };
 
 /// Those frames as the filter takes them. They must outlive the result.

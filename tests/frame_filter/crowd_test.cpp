@@ -94,6 +94,65 @@ TEST(CrowdedFrame, GivenPosesTheFilterGoesByThem) {
   EXPECT_NEAR(motion.translation().x(), film.scene.motionSince(1).translation().x(), 0.002);
 }
 
+// The front end sets the pose of frame 0 and then finds nothing of its map.
+TEST(CameraOfFrameFilter, IsInTheWorldOfTheLastPoseThatWasSet) {
+  const FilmedScene film;
+  FrameFilterOptions options;
+  options.camera = LayeredScene::kCamera;
+  FrameFilter filter(options);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(5.0, -3.0, 1.0);
+  for (int f = 0; f < FilmedScene::kFrames; ++f) {
+    const FrameInput input = film.input(f);
+    const FrameFilterResult result = filter.filter(input, film.boxes);
+    ASSERT_TRUE(result.camera_from_world) << "frame " << f;
+    if (f == 0) {
+      EXPECT_TRUE(
+          Eigen::Isometry3d(*result.camera_from_world).isApprox(Eigen::Isometry3d::Identity()))
+          << "the first frame is the world's origin";
+      filter.setPose(input.timestamp, Pose(pose));
+      continue;
+    }
+    pose = film.scene.motionSince(1) * pose;
+    const Eigen::Isometry3d found(*result.camera_from_world);
+    EXPECT_LT((found.translation() - pose.translation()).norm(), 0.003 * f) << "frame " << f;
+  }
+}
+
+TEST(CameraOfFrameFilter, IsNotGivenWhereAWorldOfTheFiltersOwnBegan) {
+  const FilmedScene film;
+  FrameFilterOptions options;
+  options.camera = LayeredScene::kCamera;
+  options.baselines = {0.0};
+  FrameFilter filter(options);
+  filter.filter(film.input(0), film.boxes);
+  FrameInput blank = film.input(1);
+  blank.gray = cv::Mat::zeros(blank.gray.size(), CV_8UC1);
+  blank.timestamp = 1.0;  // frame 0 is forgotten
+  EXPECT_FALSE(filter.filter(blank, film.boxes).camera_from_world);
+  blank.timestamp = 2.0;
+  EXPECT_FALSE(filter.filter(blank, film.boxes).camera_from_world);
+  FrameInput input = film.input(2);
+  input.timestamp = 3.0;
+  EXPECT_FALSE(filter.filter(input, film.boxes).camera_from_world);
+  filter.setPose(3.0, Pose());
+  input = film.input(3);
+  input.timestamp = 3.0 + 1.0 / 30.0;
+  EXPECT_TRUE(filter.filter(input, film.boxes).camera_from_world);
+}
+
+TEST(CameraOfFrameFilter, IsNotGivenByTheRuleNoneOrWithoutACamera) {
+  const FilmedScene film;
+  FrameFilterOptions none;
+  none.camera = LayeredScene::kCamera;
+  none.rule = FilterRule::kNone;
+  for (const FrameFilterOptions& options : {none, FrameFilterOptions()}) {
+    FrameFilter filter(options);
+    filter.filter(film.input(0), film.boxes);
+    EXPECT_FALSE(filter.filter(film.input(1), film.boxes).camera_from_world);
+  }
+}
+
 TEST(StarvedFrame, TheLeastMovingOfTheDroppedAreKeptAtLowWeight) {
   // Given how many are kept where nobody is kept for the number
   const FilmedScene film;

@@ -54,6 +54,9 @@ FrameFilterResult filterFrame(const RgbdFrame& image, const std::vector<Detectio
   frame.weight = result.weight;
   frame.lambda = result.lambda;
   frame.soft_weights = result.soft_weights;
+  if (result.camera_from_world) {
+    frame.odometry = Eigen::Isometry3d(*result.camera_from_world);
+  }
   if (filter.options().rule != FilterRule::kNone) {
     frame.in_person =
         mask.empty() ? flagPeople(frame.points, boxes) : flagPeople(frame.points, mask);

@@ -75,6 +75,7 @@ void RunCounts::add(double timestamp, const TrackingResult& tracked) {
   }
   key_frames += tracked.new_key_frame ? 1 : 0;
   relocalized += tracked.relocalized ? 1 : 0;
+  frames_carried += tracked.carried ? 1 : 0;
 }
 
 namespace {
@@ -294,6 +295,7 @@ nlohmann::json toJson(const RunCounts& counts) {
           {"tracking_failures", counts.failures},
           {"lost_frames", counts.lost},
           {"relocalized", counts.relocalized},
+          {"frames_carried", counts.frames_carried},
           {"detections",
            {{"requested", counts.detections.requested},
             {"detected", counts.detections.detected},

@@ -41,6 +41,7 @@ struct RunCounts {
   std::map<std::string, std::size_t> failures;      ///< Frames without a pose, by reason.
   std::vector<double> lost;                         ///< Their time stamps (s), the first 1000.
   std::size_t relocalized = 0;                      ///< Times that the camera was found again.
+  std::size_t frames_carried = 0;                   ///< By the filter's odometry, map not found.
   std::size_t boxes_bridged = 0;                    ///< Boxes that the detector missed.
   std::size_t map_points = 0;                       ///< Of the dense map.
   bool stopped = false;                             ///< By a signal.

@@ -41,6 +41,8 @@ struct Frame {
   bool soft_weights = false;            ///< The 0.6 rule: eq. 7's weights, or 0 and 1 only.
 
   Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
+  /// Where the filter's own odometry puts the camera; none where it does not know.
+  std::optional<Eigen::Isometry3d> odometry;
   std::optional<PosePrior> prior;  ///< None where the motion model knows nothing, or was wrong.
   std::vector<int> map_point;      ///< N map points, or kNoMapPoint.
   bool tracked = false;            ///< camera_from_world is a measurement.

@@ -158,6 +158,7 @@ TrackingResult Tracker::initialize(Frame frame) {
   constexpr double kExact = 1e-12;  // the first camera is the world's origin
   motion_.update(frame.timestamp, frame.camera_from_world,
                  kExact * MotionModel::Matrix6::Identity());
+  last_match_ = frame.timestamp;
   last_ = std::move(frame);
   return result;
 }
@@ -264,6 +265,66 @@ std::optional<MotionPrediction> Tracker::predict(double timestamp) const {
   return lost_ ? std::nullopt : motion_.predict(timestamp);
 }
 
+void Tracker::takePose(Frame& frame, const Estimate& found,
+                       const std::optional<MotionPrediction>& expected) {
+  for (std::size_t k = 0; k < found.search.matches.size(); ++k) {
+    if (found.refinement.inlier[k] != 0) {
+      frame.map_point[found.search.matches[k].key_point] = found.search.matches[k].map_point;
+    }
+  }
+  std::optional<MotionModel::Matrix6> covariance;
+  if (found.refinement.covariance) {
+    covariance = found.refinement.covariance->map();
+  }
+  const MotionModel::Update update =
+      motion_.update(frame.timestamp, found.refinement.camera_from_world, covariance);
+  frame.camera_from_world = found.refinement.camera_from_world;
+  if (options_.fuse_motion && update.fused && expected && expected->covariance) {
+    frame.camera_from_world = update.camera_from_world;
+    frame.prior = PosePrior{expected->camera_from_world, *expected->covariance};
+  }
+}
+
+Tracker::Estimate Tracker::findNear(const Frame& frame, const KeyPointGrid& grid,
+                                    const std::vector<int>& candidates,
+                                    const Eigen::Isometry3d& expected) const {
+  Estimate found = estimate(frame, grid, candidates, expected, options_.prediction_radius);
+  if (found.refinement.inliers < options_.min_inliers && frame.odometry) {
+    found = estimate(frame, grid, candidates, *frame.odometry, options_.prediction_radius);
+  }
+  if (found.refinement.inliers < options_.min_inliers) {
+    found = estimate(frame, grid, candidates, last_->camera_from_world, options_.wide_radius);
+  }
+  return found;
+}
+
+TrackingResult Tracker::carryOrLose(Frame& frame, const KeyPointGrid& grid,
+                                    TrackingFailure failure) {
+  if (lost_ || !frame.odometry || frame.timestamp - last_match_ > options_.longest_carry) {
+    return lose(failure);
+  }
+  frame.camera_from_world = *frame.odometry;
+  motion_.update(frame.timestamp, frame.camera_from_world, std::nullopt);
+  TrackingResult result;
+  result.carried = true;
+  return goOn(frame, grid, result);
+}
+
+TrackingResult Tracker::goOn(Frame& frame, const KeyPointGrid& grid, TrackingResult result) {
+  frame.tracked = true;
+  frame.inliers = result.inliers;
+  result.camera_from_world = frame.camera_from_world;
+  result.relocalized = lost_;
+  lost_ = false;
+  if (needsKeyFrame(frame)) {
+    insertKeyFrame(frame, grid);
+    result.new_key_frame = true;
+  }
+  result.reference = static_cast<int>(map_.keyFrames().size()) - 1;
+  last_ = std::move(frame);
+  return result;
+}
+
 TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   if (!last_) {
     return initialize(std::move(frame));
@@ -274,19 +335,15 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   const std::optional<MotionPrediction> expected = motion_.predict(frame.timestamp);
   Estimate coarse;
   if (!lost_) {
-    coarse = estimate(frame, grid, candidates,
-                      expected ? expected->camera_from_world : last_->camera_from_world,
-                      options_.prediction_radius);
-    if (coarse.refinement.inliers < options_.min_inliers) {
-      coarse = estimate(frame, grid, candidates, last_->camera_from_world, options_.wide_radius);
-    }
+    coarse = findNear(frame, grid, candidates,
+                      expected ? expected->camera_from_world : last_->camera_from_world);
   }
   std::vector<int> around = candidates;
   const bool search = coarse.refinement.inliers < options_.min_inliers;
   if (search) {
     coarse = findAgain(frame, grid, candidates, by_place);
     if (coarse.refinement.inliers < options_.min_inliers) {
-      return lose(TrackingFailure::kTooFewMatches);
+      return carryOrLose(frame, grid, TrackingFailure::kTooFewMatches);
     }
     around = map_.pointsOf(map_.nearestKeyFrames(coarse.refinement.camera_from_world));
   }
@@ -299,47 +356,21 @@ TrackingResult Tracker::track(Frame frame, const Relocalize& by_place) {
   const Estimate fine =
       estimate(frame, grid, around, coarse.refinement.camera_from_world, options_.refined_radius);
   if (!fine.refinement.succeeded() || fine.refinement.inliers < options_.min_inliers) {
-    return lose(TrackingFailure::kTooFewMatches);
+    return carryOrLose(frame, grid, TrackingFailure::kTooFewMatches);
   }
   if (search && !isBelievable(frame.timestamp, fine.refinement.camera_from_world)) {
     unconfirmed_.emplace(frame.timestamp, fine.refinement.camera_from_world);
-    return lose(TrackingFailure::kUnconfirmed);
+    return carryOrLose(frame, grid, TrackingFailure::kUnconfirmed);
   }
   unconfirmed_.reset();
-
-  for (std::size_t k = 0; k < fine.search.matches.size(); ++k) {
-    if (fine.refinement.inlier[k] != 0) {
-      frame.map_point[fine.search.matches[k].key_point] = fine.search.matches[k].map_point;
-    }
-  }
-  std::optional<MotionModel::Matrix6> covariance;
-  if (fine.refinement.covariance) {
-    covariance = fine.refinement.covariance->map();
-  }
-  const MotionModel::Update update =
-      motion_.update(frame.timestamp, fine.refinement.camera_from_world, covariance);
-  frame.camera_from_world = fine.refinement.camera_from_world;
-  if (options_.fuse_motion && update.fused && expected && expected->covariance) {
-    frame.camera_from_world = update.camera_from_world;
-    frame.prior = PosePrior{expected->camera_from_world, *expected->covariance};
-  }
-  frame.tracked = true;
-  frame.inliers = fine.refinement.inliers;
+  last_match_ = frame.timestamp;
+  takePose(frame, fine, expected);
   countSightings(frame, fine.search);
 
   TrackingResult result;
   result.matches = fine.search.matches.size();
-  result.inliers = frame.inliers;
-  result.camera_from_world = frame.camera_from_world;
-  result.relocalized = lost_;
-  lost_ = false;
-  if (needsKeyFrame(frame)) {
-    insertKeyFrame(frame, grid);
-    result.new_key_frame = true;
-  }
-  result.reference = static_cast<int>(map_.keyFrames().size()) - 1;
-  last_ = std::move(frame);
-  return result;
+  result.inliers = fine.refinement.inliers;
+  return goOn(frame, grid, result);
 }
 
 }  // namespace hmcdyn::slam

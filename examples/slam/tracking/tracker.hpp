@@ -59,6 +59,9 @@ struct TrackerOptions {
   /// them, whether or not the filter keeps it (MatchPolicy). ORB-SLAM's weak tracking, too, begins
   /// around a hundred.
   std::size_t few_inliers = 100;
+  /// Where the map is not found at all, the filter's odometry carries the camera on for so long
+  /// (s), as people who fill the image for a moment are gone before it has drifted by much.
+  double longest_carry = 1.0;
   TriangulationOptions triangulation;  ///< Of key points without a depth.
   DuplicateOptions duplicates;         ///< Points that a key frame sees again.
   /// How fast a camera moves (m/s, rad/s). A lost frame that is found where the camera can have got
@@ -82,6 +85,7 @@ struct TrackingResult {
   TrackingFailure failure = TrackingFailure::kNone;
   bool new_key_frame = false;
   bool relocalized = false;  ///< The frame was found again after others were lost.
+  bool carried = false;      ///< The pose is of the filter's odometry, the map was not found.
   int reference = 0;         ///< Key frame that the pose hangs on: what moves it, moves the pose.
   std::size_t matches = 0;   ///< Map points matched in the last search.
   std::size_t inliers = 0;   ///< Those that agree with the pose.
@@ -128,12 +132,18 @@ class Tracker {
   std::optional<Eigen::Isometry3d> relocalize(const Frame& frame) const;
   Estimate findAgain(const Frame& frame, const KeyPointGrid& grid,
                      const std::vector<int>& candidates, const Relocalize& by_place) const;
+  Estimate findNear(const Frame& frame, const KeyPointGrid& grid,
+                    const std::vector<int>& candidates, const Eigen::Isometry3d& expected) const;
   bool needsKeyFrame(const Frame& frame) const;
   TrackingResult initialize(Frame frame);
+  TrackingResult carryOrLose(Frame& frame, const KeyPointGrid& grid, TrackingFailure failure);
+  TrackingResult goOn(Frame& frame, const KeyPointGrid& grid, TrackingResult result);
   TrackingResult lose(TrackingFailure failure);
   bool isBelievable(double timestamp, const Eigen::Isometry3d& found) const;
   bool isReachable(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
                    double seconds) const;
+  void takePose(Frame& frame, const Estimate& found,
+                const std::optional<MotionPrediction>& expected);
   void insertKeyFrame(Frame& frame, const KeyPointGrid& grid);
   void countSightings(const Frame& frame, const ProjectionSearch& search);
 
@@ -142,6 +152,7 @@ class Tracker {
   Map map_;
   std::optional<Frame> last_;  ///< The last tracked frame.
   MotionModel motion_;
+  double last_match_ = 0.0;  ///< When the map was found last (s).
   bool lost_ = false;
   std::optional<std::pair<double, Eigen::Isometry3d>> unconfirmed_;  ///< Time (s) and pose.
   mutable PoseRefinementWorkspace workspace_;  ///< Memory only: changes no result.

@@ -87,6 +87,61 @@ TEST(Tracker, AfterLongNothingTheLastPlaceConfirmsNoMore) {
   EXPECT_EQ(tracker.track(room.see(41, movedBy(0.0, 0.0))).failure, TrackingFailure::kNone);
 }
 
+TEST(Tracker, WhereTheMapIsNotFoundTheFiltersOdometryCarriesTheCamera) {
+  const Room room(17);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  tracker.track(room.see(1, movedBy(0.01, 0.0)));
+  for (std::size_t k = 2; k < 5; ++k) {
+    Frame blind = nothing(k);
+    blind.odometry = movedBy(0.01 * static_cast<double>(k), 0.0);
+    const TrackingResult carried = tracker.track(std::move(blind));
+    ASSERT_EQ(carried.failure, TrackingFailure::kNone);
+    EXPECT_TRUE(carried.carried);
+    EXPECT_EQ(carried.inliers, 0U);
+    EXPECT_EQ(
+        distanceBetween(carried.camera_from_world, movedBy(0.01 * static_cast<double>(k), 0.0)),
+        0.0);
+  }
+  const TrackingResult found = tracker.track(room.see(5, movedBy(0.05, 0.0)));
+  ASSERT_EQ(found.failure, TrackingFailure::kNone);
+  EXPECT_FALSE(found.carried);
+  EXPECT_FALSE(found.relocalized) << "it was not lost";
+  EXPECT_LT(distanceBetween(found.camera_from_world, movedBy(0.05, 0.0)), 0.002);
+}
+
+TEST(Tracker, ACarriedFrameMapsWhatItSees) {
+  const Room room(19);
+  const Room unknown(20);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  Frame frame = unknown.see(1, movedBy(0.01, 0.0));
+  frame.odometry = movedBy(0.01, 0.0);
+  const TrackingResult carried = tracker.track(std::move(frame));
+  ASSERT_TRUE(carried.carried);
+  EXPECT_TRUE(carried.new_key_frame);
+  const TrackingResult next = tracker.track(unknown.see(2, movedBy(0.02, 0.0)));
+  ASSERT_EQ(next.failure, TrackingFailure::kNone);
+  EXPECT_FALSE(next.carried) << "the map has what the carried frame saw";
+  EXPECT_LT(distanceBetween(next.camera_from_world, movedBy(0.02, 0.0)), 0.002);
+}
+
+TEST(Tracker, OdometryCarriesTheCameraForASecondAndNotFromWhereItIsLost) {
+  const Room room(18);
+  Tracker tracker(kCamera, {});
+  tracker.track(room.see(0, movedBy(0.0, 0.0)));
+  const auto blindAt = [&](std::size_t index) {
+    Frame blind = nothing(index);
+    blind.odometry = movedBy(0.0, 0.0);
+    return tracker.track(std::move(blind)).failure;
+  };
+  for (std::size_t k = 1; k <= 30; ++k) {
+    EXPECT_EQ(blindAt(k), TrackingFailure::kNone) << "frame " << k;
+  }
+  EXPECT_EQ(blindAt(31), TrackingFailure::kTooFewMatches);
+  EXPECT_EQ(blindAt(32), TrackingFailure::kTooFewMatches) << "lost is lost";
+}
+
 TEST(Tracker, CannotStartWithoutDepth) {
   const Room room(5);
   Frame frame = room.see(0, movedBy(0.0, 0.0));
