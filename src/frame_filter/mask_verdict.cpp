@@ -13,10 +13,31 @@ namespace {
 /// number only.
 constexpr float kContestedWeight = kRescueWeight;
 
+/// A corner so near to what moves (px) is of its silhouette, not of the room: the ring that FAST
+/// looks at has a radius of 3 px, and colour and depth are registered no better than to one.
+constexpr int kOfSilhouette = 4;
+
+bool isBesideMoving(const cv::Mat& label, int column, int row) {
+  const int first = std::max(column - kOfSilhouette, 0);
+  const int end = std::min(column + kOfSilhouette + 1, label.cols);
+  const int last_row = std::min(row + kOfSilhouette, label.rows - 1);
+  for (int y = std::max(row - kOfSilhouette, 0); y <= last_row; ++y) {
+    const std::uint8_t* labels = label.ptr(y);
+    if (std::find(labels + first, labels + end, static_cast<std::uint8_t>(MaskLabel::kMoving)) !=
+        labels + end) {
+      return true;
+    }
+  }
+  return false;
+}
+
 MaskLabel labelAt(const MotionMask& mask, float u, float v) {
   const int column = std::clamp(static_cast<int>(std::lround(u)), 0, mask.label.cols - 1);
   const int row = std::clamp(static_cast<int>(std::lround(v)), 0, mask.label.rows - 1);
-  return static_cast<MaskLabel>(mask.label.at<std::uint8_t>(row, column));
+  const auto label = static_cast<MaskLabel>(mask.label.at<std::uint8_t>(row, column));
+  return label == MaskLabel::kStatic && isBesideMoving(mask.label, column, row)
+             ? MaskLabel::kUnknown
+             : label;
 }
 
 void countLabels(FilterStageResult& stage) {

@@ -21,7 +21,8 @@ bool canBeMasked(const FrameInput& frame);
 MotionMaskFrame maskFrameOf(const FrameInput& frame, const DynamicFeatureFilterInput& input,
                             const Eigen::Isometry3d& odometry, bool pose_is_known);
 
-/// What the mask says at the nearest pixels of N points; unknown where it is worth nothing.
+/// What the mask says at the nearest pixels of N points; unknown where it is worth nothing, and for
+/// corners of the room's side of a silhouette, which move with what moves.
 std::vector<MaskLabel> labelsAt(const KeyPointsView& points, const MotionMask& mask);
 
 /// Labels, weights and beliefs of the points about which the mask knows something: what moves is
