@@ -59,7 +59,7 @@ if $install; then
   scripts/install_dependencies.sh --bench
 fi
 [[ $repetitions =~ ^[1-9][0-9]*$ ]] || usage_error "--repetitions is '$repetitions'; expected a number above 0"
-benches=(bench_clustering bench_epipolar bench_filter_stage bench_pose_refinement)
+benches=(bench_clustering bench_epipolar bench_filter_stage bench_motion_mask bench_pose_refinement)
 # With the examples only, and on real frames; HMCDYN_BENCH_FRAMES names a folder in TUM's format.
 front_end=(bench_front_end)
 export OMP_NUM_THREADS=1 # Open3D and PCL would take all cores

@@ -11,7 +11,6 @@
 namespace hmcdyn::internal {
 namespace {
 
-constexpr float kNearestOfAll = 0.1f;        // (m): no depth camera measures nearer
 constexpr float kFarWeight = 0.5f;           // of "static" beyond max_depth
 constexpr std::size_t kFewestToDoubt = 200;  // surfaces, before their agreement means anything
 // Ages (s) between which a thing moves by more than its edges flicker, and is still near its place.
@@ -33,6 +32,19 @@ struct Comparison {
   bool by_gray = false;
 };
 
+/// The rays of the columns, and room for a row.
+RowPlaces prepared(RowPlaces reuse, int width, const SmallCamera& camera) {
+  RowPlaces places = std::move(reuse);
+  const auto columns = static_cast<std::size_t>(width);
+  places.ray.resize(columns);
+  places.depth.resize(columns);
+  places.pixel.resize(columns);
+  for (std::size_t x = 0; x < columns; ++x) {
+    places.ray[x] = (static_cast<float>(x) - camera.cx) / camera.fx;
+  }
+  return places;
+}
+
 class Comparer {
  public:
   Comparer(const SmallFrame& frame, const SmallCamera& camera,
@@ -42,49 +54,59 @@ class Comparer {
   Tally run(const Comparison& with, EvidenceImage& image) const {
     Tally tally;
     for (int y = 0; y < frame_.height; ++y) {
-      row(y, with, image, tally);
+      place(y, with.motion, image.places);
+      const Tally of_row = row(y, with, image);
+      tally.same += of_row.same;
+      tally.compared += of_row.compared;
     }
     return tally;
   }
 
  private:
-  void row(int y, const Comparison& with, EvidenceImage& image, Tally& tally) const {
-    const auto& r = with.motion.rotation;
-    const auto& t = with.motion.translation;
-    const float ray_y = (static_cast<float>(y) - camera_.cy) / camera_.fy;
-    const float columns = static_cast<float>(frame_.width);
-    const float rows = static_cast<float>(frame_.height);
+  /// Pixels nearer than max_depth that the earlier frame saw: placeOnRay() with one division.
+  void place(int y, const RelativePose& motion, RowPlaces& places) const {
+    const auto r = motion.rotation;
+    const auto t = motion.translation;
+    const SmallCamera camera = camera_;
+    const float ray_y = (static_cast<float>(y) - camera.cy) / camera.fy;
+    const int width = frame_.width;
+    const int height = frame_.height;
     const float max_depth = options_.depth.max_depth;
-    const auto start = static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width);
-    for (int x = 0; x < frame_.width; ++x) {
-      const std::size_t i = start + static_cast<std::size_t>(x);
-      const float z = frame_.depth[i];
-      if (!(z > 0.0f)) {
-        continue;
-      }
-      if (z > max_depth) {
+    const float* depth = frame_.depth.data() + frame_.index(y, 0);
+    const float* rays = places.ray.data();
+    float* to_depth = places.depth.data();
+    std::int32_t* to_pixel = places.pixel.data();
+    for (int x = 0; x < width; ++x) {
+      const float z = depth[x];
+      const float ray_x = rays[x];
+      const float there = (r[6] * ray_x + r[7] * ray_y + r[8]) * z + t[2];
+      const float inverse = 1.0f / there;
+      const float u = camera.fx * ((r[0] * ray_x + r[1] * ray_y + r[2]) * z + t[0]) * inverse +
+                      camera.cx + 0.5f;
+      const float v = camera.fy * ((r[3] * ray_x + r[4] * ray_y + r[5]) * z + t[1]) * inverse +
+                      camera.cy + 0.5f;
+      const bool has_place = allOf(z > 0.0f, z <= max_depth, there >= kNearestPlace);
+      to_depth[x] = there;
+      to_pixel[x] = pixelAround(u, v, has_place, width, height);
+    }
+  }
+
+  Tally row(int y, const Comparison& with, EvidenceImage& image) const {
+    const float max_depth = options_.depth.max_depth;
+    const std::size_t start = frame_.index(y, 0);
+    Tally tally;
+    for (std::size_t x = 0; x < image.places.pixel.size(); ++x) {
+      const std::size_t i = start + x;
+      const std::int32_t pixel = image.places.pixel[x];
+      if (pixel >= 0) {
+        judge(i, image.places.depth[x], with.earlier->cells[static_cast<std::size_t>(pixel)], with,
+              image, tally);
+      } else if (frame_.depth[i] > max_depth) {
         // not judged; but what is that far does not belong to the thing before it
         image.evidence[i] = {-kFarWeight, kFarWeight};
-        continue;
       }
-      const float ray_x = (static_cast<float>(x) - camera_.cx) / camera_.fx;
-      const float there = (r[6] * ray_x + r[7] * ray_y + r[8]) * z + t[2];
-      if (there < kNearestOfAll) {
-        continue;
-      }
-      const float inverse = 1.0f / there;
-      const float u = camera_.fx * ((r[0] * ray_x + r[1] * ray_y + r[2]) * z + t[0]) * inverse +
-                      camera_.cx + 0.5f;
-      const float v = camera_.fy * ((r[3] * ray_x + r[4] * ray_y + r[5]) * z + t[1]) * inverse +
-                      camera_.cy + 0.5f;
-      if (!(u >= 0.0f && v >= 0.0f && u < columns && v < rows)) {
-        continue;
-      }
-      const MaskCell& cell =
-          with.earlier->cells[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame_.width) +
-                              static_cast<std::size_t>(u)];
-      judge(i, there, cell, with, image, tally);
     }
+    return tally;
   }
 
   void judge(std::size_t i, float there, const MaskCell& cell, const Comparison& with,
@@ -163,6 +185,7 @@ EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& cam
   image.fresh = 0;
   image.proof = 0;
   const MaskEvidenceOptions& o = options.evidence;
+  image.places = prepared(std::move(image.places), frame.width, camera);
   const Comparer comparer(frame, camera, named, options);
   const SurfaceTolerance tolerance = surfaceTolerance(options.depth);
   std::uint8_t bit = 1;

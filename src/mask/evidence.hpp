@@ -31,12 +31,21 @@ struct SurfaceTolerance {
 };
 SurfaceTolerance surfaceTolerance(const MaskDepthOptions& options);
 
+/// Where the surfaces of one row are in another frame: worked out for a row at once, so that the
+/// compiler takes several pixels at a time.
+struct RowPlaces {
+  std::vector<float> ray;           ///< Of each column: x of its ray at z = 1.
+  std::vector<float> depth;         ///< There (m).
+  std::vector<std::int32_t> pixel;  ///< There; -1 = outside, or nothing to compare.
+};
+
 struct EvidenceImage {
   std::vector<Evidence> evidence;
   std::vector<Comparisons> comparisons;
   float agreement = 1.0f;  ///< Surfaces that were there in the youngest earlier frame.
   std::uint8_t fresh = 0;  ///< Bits of frames at most fresh_age old.
   std::uint8_t proof = 0;  ///< Bits of frames at least proof_age old.
+  RowPlaces places;        ///< Workspace.
 };
 
 /// @param named a flag a pixel: a box or mask says that it may move; empty = none.

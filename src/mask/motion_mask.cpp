@@ -70,7 +70,7 @@ struct MotionMaskEstimator::State {
   EvidenceImage evidence;
   SmoothingWorkspace smoothing;
   ThingsWorkspace things;
-  std::vector<MaskCell> cells;
+  ReduceWorkspace reducing;
   std::vector<std::uint8_t> named;
   std::vector<std::uint8_t> holes;
   std::vector<float> depths;
@@ -163,7 +163,7 @@ void MotionMaskEstimator::State::labelPixels(const MotionMaskFrame& frame, int r
     }
   }
   labelHoles(small, label, holes);
-  labelWholeImage(frame.depth, small, reduction, label, mask.label);
+  labelWholeImage(frame.depth, small, reduction, label, holes, mask.label);
   const auto least = static_cast<float>(measured) * options.max_moving_share;
   mask.state = static_cast<float>(moving) > least ? MaskState::kTooLarge : MaskState::kGood;
   mask.moving_share = static_cast<float>(moving) / static_cast<float>(small.size());
@@ -193,7 +193,7 @@ const MotionMask& MotionMaskEstimator::State::update(const MotionMaskFrame& fram
       !std::isfinite(frame.timestamp)) {
     return unknown(MaskState::kMotionUnknown);
   }
-  SmallFrame small = reduceFrame(frame, reduction, history.spare(), cells);
+  SmallFrame small = reduceFrame(frame, reduction, history.spare(), reducing);
   if (small.depth_share < options.min_depth_share) {
     history.giveBack(std::move(small));
     return unknown(MaskState::kNoDepth);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace hmcdyn::internal {
@@ -12,10 +13,7 @@ constexpr float kFar = 1e6f;        // stands for "no depth" where the nearest i
 constexpr float kLongest = 100.0f;  // (m): no depth camera measures that far
 constexpr int kFewestOfNine = 6;    // depths around a pixel that may speak of free space
 
-std::size_t at(int row, int column, int width) {
-  return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-         static_cast<std::size_t>(column);
-}
+bool isDepth(float z) { return z > 0.0f && z < kLongest; }
 
 /// Depth of the pixel in the middle of a square, or of one beside it: what is missing there.
 void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small) {
@@ -25,118 +23,115 @@ void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small) {
   for (int y = 0; y < small.height; ++y) {
     const auto* row = depth.ptr<float>(y * reduction + middle);
     const auto* row_beside = depth.ptr<float>(y * reduction + beside);
+    float* to = small.depth.data() + small.index(y, 0);
     for (int x = 0; x < small.width; ++x) {
       const int column = x * reduction + middle;
       const int column_beside = x * reduction + beside;
-      float z = 0.0f;
-      for (const float candidate :
-           {row[column], row_beside[column_beside], row[column_beside], row_beside[column]}) {
-        if (candidate > 0.0f && candidate < kLongest) {
-          z = candidate;
-          ++measured;
-          break;
+      float z = row[column];
+      if (!isDepth(z)) {
+        for (const float other :
+             {row_beside[column_beside], row[column_beside], row_beside[column]}) {
+          z = isDepth(other) && !isDepth(z) ? other : z;
         }
+        z = isDepth(z) ? z : 0.0f;
       }
-      small.depth[at(y, x, small.width)] = z;
+      measured += z > 0.0f ? 1 : 0;
+      to[x] = z;
     }
   }
   small.depth_share = static_cast<float>(measured) / static_cast<float>(small.size());
 }
 
 /// Mean gray level of each square.
-void reduceGray(const cv::Mat& gray, int reduction, SmallFrame& small) {
+void reduceGray(const cv::Mat& gray, int reduction, SmallFrame& small,
+                std::vector<std::uint32_t>& sums) {
   small.gray.resize(small.size());
-  const int count = reduction * reduction;
-  double total = 0.0;
+  const auto columns = static_cast<std::size_t>(small.width) * static_cast<std::size_t>(reduction);
+  const auto count = static_cast<double>(reduction) * static_cast<double>(reduction);
+  const double half = 0.5 * count;
+  std::uint64_t total = 0;
   for (int y = 0; y < small.height; ++y) {
-    for (int x = 0; x < small.width; ++x) {
-      int sum = 0;
-      for (int row = y * reduction; row < (y + 1) * reduction; ++row) {
-        const std::uint8_t* from = gray.ptr(row) + x * reduction;
-        for (int k = 0; k < reduction; ++k) {
-          sum += from[k];
-        }
+    sums.assign(columns, 0);
+    for (int row = y * reduction; row < (y + 1) * reduction; ++row) {
+      const std::uint8_t* from = gray.ptr(row);
+      for (std::size_t x = 0; x < columns; ++x) {
+        sums[x] += from[x];
       }
-      small.gray[at(y, x, small.width)] = static_cast<std::uint8_t>((sum + count / 2) / count);
+    }
+    const std::uint32_t* from = sums.data();
+    std::uint8_t* to = small.gray.data() + small.index(y, 0);
+    for (int x = 0; x < small.width; ++x, from += reduction) {
+      const std::uint32_t sum = std::accumulate(from, from + reduction, 0U);
+      to[x] = static_cast<std::uint8_t>((static_cast<double>(sum) + half) / count);
       total += sum;
     }
   }
   small.brightness =
-      static_cast<float>(total / (static_cast<double>(count) * static_cast<double>(small.size())));
+      static_cast<float>(static_cast<double>(total) / (count * static_cast<double>(small.size())));
 }
 
-struct Extremes {
-  float nearest = kFar;
-  float farthest = 0.0f;
-  int measured = 0;
-  std::uint8_t darkest = 255;
-  std::uint8_t brightest = 0;
+template <typename T>
+T smallest(T a, T b, T c) {
+  return std::min(std::min(a, b), c);
+}
+template <typename T>
+T largest(T a, T b, T c) {
+  return std::max(std::max(a, b), c);
+}
 
-  void take(const Extremes& other) {
-    nearest = std::min(nearest, other.nearest);
-    farthest = std::max(farthest, other.farthest);
-    measured += other.measured;
-    darkest = std::min(darkest, other.darkest);
-    brightest = std::max(brightest, other.brightest);
-  }
-};
-
-/// The extremes of three neighbours, packed in cells: `thing` counts depths.
-void extremesAlongRow(const SmallFrame& small, int y, MaskCell* to) {
-  const auto pixel = [&](int x) {
-    Extremes one;
-    const std::size_t i = at(y, x, small.width);
-    const float z = small.depth[i];
-    if (z > 0.0f) {
-      one.nearest = one.farthest = z;
-      one.measured = 1;
-    }
-    if (!small.gray.empty()) {
-      one.darkest = one.brightest = small.gray[i];
-    }
-    return one;
-  };
-  Extremes before;
-  Extremes here = pixel(0);
+/// Three neighbours above each other; at index x + 1, beside what leaves all as it is.
+void extremesOfColumns(const SmallFrame& small, int y, ReduceWorkspace& w) {
+  const int above = std::max(y - 1, 0);
+  const int below = std::min(y + 1, small.height - 1);
+  const float* z_above = small.depth.data() + small.index(above, 0);
+  const float* z_here = small.depth.data() + small.index(y, 0);
+  const float* z_below = small.depth.data() + small.index(below, 0);
+  const int has_above = above < y ? 1 : 0;
+  const int has_below = below > y ? 1 : 0;
+  float* nearest = w.nearest.data() + 1;
+  float* farthest = w.farthest.data() + 1;
+  int* measured = w.measured.data() + 1;
+  const auto near = [](float z) { return z > 0.0f ? z : kFar; };
+  const auto count = [](float z) { return z > 0.0f ? 1 : 0; };
   for (int x = 0; x < small.width; ++x) {
-    const Extremes after = x + 1 < small.width ? pixel(x + 1) : Extremes{};
-    Extremes all = before;
-    all.take(here);
-    all.take(after);
-    to[x] = {all.nearest, all.farthest,  0.0f,
-             all.darkest, all.brightest, static_cast<std::int16_t>(all.measured)};
-    before = here;
-    here = after;
+    nearest[x] = smallest(near(z_above[x]), near(z_here[x]), near(z_below[x]));
+    farthest[x] = largest(z_above[x], z_here[x], z_below[x]);
+    measured[x] = has_above * count(z_above[x]) + count(z_here[x]) + has_below * count(z_below[x]);
+  }
+  if (small.gray.empty()) {
+    return;
+  }
+  const std::uint8_t* g_above = small.gray.data() + small.index(above, 0);
+  const std::uint8_t* g_here = small.gray.data() + small.index(y, 0);
+  const std::uint8_t* g_below = small.gray.data() + small.index(below, 0);
+  std::uint8_t* darkest = w.darkest.data() + 1;
+  std::uint8_t* brightest = w.brightest.data() + 1;
+  for (int x = 0; x < small.width; ++x) {
+    darkest[x] = smallest(g_above[x], g_here[x], g_below[x]);
+    brightest[x] = largest(g_above[x], g_here[x], g_below[x]);
   }
 }
 
-void fillCells(SmallFrame& small, std::vector<MaskCell>& rows) {
-  const auto width = static_cast<std::size_t>(small.width);
-  rows.resize(small.size());
+void fillCells(SmallFrame& small, ReduceWorkspace& w) {
+  const std::size_t padded = static_cast<std::size_t>(small.width) + 2;
+  w.nearest.assign(padded, kFar);
+  w.farthest.assign(padded, 0.0f);
+  w.measured.assign(padded, 0);
+  // without a gray image every gray level is possible
+  w.darkest.assign(padded, small.gray.empty() ? 0 : 255);
+  w.brightest.assign(padded, small.gray.empty() ? 255 : 0);
   for (int y = 0; y < small.height; ++y) {
-    extremesAlongRow(small, y, rows.data() + static_cast<std::size_t>(y) * width);
-  }
-  for (int y = 0; y < small.height; ++y) {
-    const int first = std::max(y - 1, 0);
-    const int last = std::min(y + 1, small.height - 1);
-    for (std::size_t x = 0; x < width; ++x) {
-      MaskCell cell = rows[static_cast<std::size_t>(first) * width + x];
-      int measured = cell.thing;
-      for (int r = first + 1; r <= last; ++r) {
-        const MaskCell& other = rows[static_cast<std::size_t>(r) * width + x];
-        cell.nearest = std::min(cell.nearest, other.nearest);
-        cell.farthest = std::max(cell.farthest, other.farthest);
-        cell.darkest = std::min(cell.darkest, other.darkest);
-        cell.brightest = std::max(cell.brightest, other.brightest);
-        measured += other.thing;
-      }
-      cell.nearest = measured >= kFewestOfNine ? cell.nearest : 0.0f;
-      cell.thing = 0;
-      if (small.gray.empty()) {
-        cell.darkest = 0;
-        cell.brightest = 255;
-      }
-      small.cells[static_cast<std::size_t>(y) * width + x] = cell;
+    extremesOfColumns(small, y, w);
+    MaskCell* cells = small.cells.data() + small.index(y, 0);
+    for (std::size_t x = 0; x + 2 < padded; ++x) {
+      const int measured = w.measured[x] + w.measured[x + 1] + w.measured[x + 2];
+      const float nearest = smallest(w.nearest[x], w.nearest[x + 1], w.nearest[x + 2]);
+      cells[x] = {measured >= kFewestOfNine ? nearest : 0.0f,
+                  largest(w.farthest[x], w.farthest[x + 1], w.farthest[x + 2]),
+                  0.0f,
+                  smallest(w.darkest[x], w.darkest[x + 1], w.darkest[x + 2]),
+                  largest(w.brightest[x], w.brightest[x + 1], w.brightest[x + 2]),
+                  0};
     }
   }
 }
@@ -156,7 +151,7 @@ SmallCamera smallCamera(const PinholeCamera& camera, int reduction) {
 }
 
 SmallFrame reduceFrame(const MotionMaskFrame& frame, int reduction, SmallFrame reuse,
-                       std::vector<MaskCell>& scratch) {
+                       ReduceWorkspace& workspace) {
   SmallFrame small = std::move(reuse);
   small.timestamp = frame.timestamp;
   small.camera_from_world = frame.camera_from_world;
@@ -169,9 +164,9 @@ SmallFrame reduceFrame(const MotionMaskFrame& frame, int reduction, SmallFrame r
   if (frame.gray.empty()) {
     small.gray.clear();
   } else {
-    reduceGray(frame.gray, reduction, small);
+    reduceGray(frame.gray, reduction, small, workspace.sums);
   }
-  fillCells(small, scratch);
+  fillCells(small, workspace);
   return small;
 }
 
@@ -192,8 +187,13 @@ RelativePose relativePose(const Pose& earlier, const Pose& current) {
 StaticPlace staticPlace(std::uint32_t pixel, const SmallFrame& frame, const SmallCamera& camera,
                         const RelativePose& motion) {
   const auto width = static_cast<std::uint32_t>(frame.width);
-  return staticPlace(static_cast<int>(pixel / width), static_cast<int>(pixel % width),
-                     frame.depth[pixel], camera, motion);
+  const std::uint32_t row = pixel / width;
+  const std::uint32_t column = pixel % width;
+  const float z = frame.depth[pixel];
+  const StaticPlace place =
+      placeOnRay((static_cast<float>(column) - camera.cx) / camera.fx,
+                 (static_cast<float>(row) - camera.cy) / camera.fy, z, camera, motion);
+  return z > 0.0f && place.depth >= kNearestPlace ? place : StaticPlace{};
 }
 
 bool isFinite(const Pose& pose) { return pose.matrix.map().allFinite(); }

@@ -57,10 +57,20 @@ int reductionOf(int image_width, int working_width);
 /// A reduced pixel's depth is the one of the whole image's pixel in its middle.
 SmallCamera smallCamera(const PinholeCamera& camera, int reduction);
 
+/// Buffers of reduceFrame().
+struct ReduceWorkspace {
+  std::vector<std::uint32_t> sums;  ///< Of gray levels, of each column of a row of squares.
+  // Of three reduced pixels above each other, a column at each border added:
+  std::vector<float> nearest;
+  std::vector<float> farthest;
+  std::vector<int> measured;
+  std::vector<std::uint8_t> darkest;
+  std::vector<std::uint8_t> brightest;
+};
+
 /// Fills a frame. @param reuse its memory is taken over.
-/// @param scratch of the reduced image; reused.
 SmallFrame reduceFrame(const MotionMaskFrame& frame, int reduction, SmallFrame reuse,
-                       std::vector<MaskCell>& scratch);
+                       ReduceWorkspace& workspace);
 
 /// Rotation (row by row) and translation that take points of one camera's frame to another's.
 struct RelativePose {
@@ -77,22 +87,37 @@ struct StaticPlace {
   float v = -1.0f;
   float depth = 0.0f;
 };
-/// @param z depth of the pixel (m). @param motion takes points of its camera to the other's.
-inline StaticPlace staticPlace(int row, int column, float z, const SmallCamera& camera,
-                               const RelativePose& motion) {
-  constexpr float kNearest = 0.1f;  // (m)
-  const float x = (static_cast<float>(column) - camera.cx) / camera.fx * z;
-  const float y = (static_cast<float>(row) - camera.cy) / camera.fy * z;
+constexpr float kNearestPlace = 0.1f;  // (m): no depth camera measures nearer
+
+/// @param ray_x, ray_y of the pixel, at z = 1. @param z its depth (m). @param motion takes points
+/// of its camera to the other's. Means nothing where z or the depth there is too small.
+inline StaticPlace placeOnRay(float ray_x, float ray_y, float z, const SmallCamera& camera,
+                              const RelativePose& motion) {
+  const float x = ray_x * z;
+  const float y = ray_y * z;
   const auto& r = motion.rotation;
   const auto& t = motion.translation;
   const float depth = r[6] * x + r[7] * y + r[8] * z + t[2];
-  if (!(z > 0.0f) || depth < kNearest) {
-    return {};
-  }
   return {camera.fx * (r[0] * x + r[1] * y + r[2] * z + t[0]) / depth + camera.cx + 0.5f,
           camera.fy * (r[3] * x + r[4] * y + r[5] * z + t[1]) / depth + camera.cy + 0.5f, depth};
 }
-/// The same of a pixel by its number.
+/// True where all are. All are evaluated: a loop has no branch then, and the compiler takes several
+/// pixels at a time.
+template <typename... Flags>
+constexpr bool allOf(Flags... flags) {
+  return (static_cast<unsigned>(flags) & ...) != 0U;
+}
+
+/// Number of the pixel that (u, v) lies in; -1 outside the image, or where none is wanted.
+inline std::int32_t pixelAround(float u, float v, bool wanted, int width, int height) {
+  const bool inside = allOf(wanted, u >= 0.0f, v >= 0.0f, u < static_cast<float>(width),
+                            v < static_cast<float>(height));
+  const auto column = static_cast<std::int32_t>(inside ? u : 0.0f);
+  const auto row = static_cast<std::int32_t>(inside ? v : 0.0f);
+  return inside ? row * width + column : -1;
+}
+
+/// Where the surface of a pixel is, by its number; u and v are -1 where it has no place.
 StaticPlace staticPlace(std::uint32_t pixel, const SmallFrame& frame, const SmallCamera& camera,
                         const RelativePose& motion);
 

@@ -2,6 +2,7 @@
 #include "smoothing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -22,40 +23,53 @@ Evidence operator-(const Evidence& a, const Evidence& b) {
   return {a.value - b.value, a.weight - b.weight};
 }
 
+/// Of pixels with those before them, a column or a row earlier.
+void coupleRow(const float* here, const float* before, int count, float most, float depth_step,
+               float* to) {
+  for (int x = 0; x < count; ++x) {
+    const float a = here[x];
+    const float b = before[x];
+    const float steps = (a - b) / (depth_step * std::min(a, b) + 0.002f);
+    const float squared = steps * steps;
+    const float on_surface = most / (1.0f + squared * squared);
+    to[x] = allOf(a > 0.0f, b > 0.0f) ? on_surface : most * kThroughHoles;
+  }
+}
+
 void couple(const SmallFrame& frame, const MaskSegmentOptions& options,
             SmoothingWorkspace& workspace) {
   const float most = std::exp(-std::sqrt(2.0f) / options.reach);  // Gastal and Oliveira, eq. 21
-  const auto coupling = [&](float a, float b) {
-    if (!(a > 0.0f) || !(b > 0.0f)) {
-      return most * kThroughHoles;
-    }
-    const float steps = (a - b) / (options.depth_step * std::min(a, b) + 0.002f);
-    const float squared = steps * steps;
-    return most / (1.0f + squared * squared);
-  };
-  const auto width = static_cast<std::size_t>(frame.width);
   workspace.left.assign(frame.size(), 0.0f);
   workspace.above.assign(frame.size(), 0.0f);
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    if (i % width != 0) {
-      workspace.left[i] = coupling(frame.depth[i], frame.depth[i - 1]);
-    }
-    if (i >= width) {
-      workspace.above[i] = coupling(frame.depth[i], frame.depth[i - width]);
+  for (int y = 0; y < frame.height; ++y) {
+    const std::size_t start = frame.index(y, 0);
+    const float* depth = frame.depth.data() + start;
+    coupleRow(depth + 1, depth, frame.width - 1, most, options.depth_step,
+              workspace.left.data() + start + 1);
+    if (y > 0) {
+      coupleRow(depth, depth - frame.width, frame.width, most, options.depth_step,
+                workspace.above.data() + start);
     }
   }
 }
 
-void alongRow(const float* left, Evidence* row, std::size_t width, std::vector<Evidence>& own) {
-  std::copy(row, row + width, own.begin());
+/// Several rows at once: each step waits for the one before, but not for those of other rows.
+template <std::size_t kRows>
+void alongRows(const float* left, Evidence* rows, std::size_t width, std::vector<Evidence>& own) {
+  std::copy(rows, rows + kRows * width, own.begin());
   for (std::size_t x = 1; x < width; ++x) {
-    row[x] = row[x] + left[x] * row[x - 1];
+    for (std::size_t i = x; i < kRows * width; i += width) {
+      rows[i] = rows[i] + left[i] * rows[i - 1];
+    }
   }
-  Evidence back;
+  std::array<Evidence, kRows> back{};
   for (std::size_t x = width; x-- > 0;) {
-    const Evidence from_right = x + 1 < width ? left[x + 1] * back : Evidence{};
-    row[x] = row[x] + from_right;
-    back = own[x] + from_right;
+    for (std::size_t k = 0; k < kRows; ++k) {
+      const std::size_t i = k * width + x;
+      const Evidence from_right = x + 1 < width ? left[i + 1] * back[k] : Evidence{};
+      rows[i] = rows[i] + from_right;
+      back[k] = own[i] + from_right;
+    }
   }
 }
 
@@ -83,10 +97,15 @@ void spreadAlongSurfaces(const SmallFrame& frame, const MaskSegmentOptions& opti
                          std::vector<Evidence>& evidence, SmoothingWorkspace& workspace) {
   couple(frame, options, workspace);
   const auto width = static_cast<std::size_t>(frame.width);
-  workspace.line.resize(width);
+  constexpr std::size_t kTogether = 4;
+  workspace.lines.resize(kTogether * width);
   for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t start = 0; start < evidence.size(); start += width) {
-      alongRow(&workspace.left[start], &evidence[start], width, workspace.line);
+    std::size_t start = 0;
+    for (; start + kTogether * width <= evidence.size(); start += kTogether * width) {
+      alongRows<kTogether>(&workspace.left[start], &evidence[start], width, workspace.lines);
+    }
+    for (; start < evidence.size(); start += width) {
+      alongRows<1>(&workspace.left[start], &evidence[start], width, workspace.lines);
     }
     alongColumns(workspace.above, width, evidence, workspace);
   }

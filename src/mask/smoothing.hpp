@@ -11,7 +11,7 @@ namespace hmcdyn::internal {
 struct SmoothingWorkspace {
   std::vector<float> left;   ///< Coupling of each pixel with the one on its left, 0..1.
   std::vector<float> above;  ///< With the one above.
-  std::vector<Evidence> line;
+  std::vector<Evidence> lines;
   std::vector<Evidence> image;
 };
 

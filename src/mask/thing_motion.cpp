@@ -10,31 +10,54 @@ namespace hmcdyn::internal {
 namespace {
 
 constexpr std::size_t kSamples = 120;
-constexpr int kReach = 12;                // reduced pixels: 1.5 m/s across at 1.5 m in 0.1 s
-constexpr int kCoarse = 2;                // first step of the search
-constexpr float kMostDifference = 40.0f;  // gray levels: more is not more wrong
-constexpr float kLeastRelief = 2.0f;      // gray levels by which the best place beats the others
-constexpr float kDepthGate = 0.25f;       // (m) that a depth may change in the time between
+constexpr int kReach = 12;  // reduced pixels: 1.5 m/s across at 1.5 m in 0.1 s
+constexpr int kCoarse = 2;  // first step of the search
+constexpr std::size_t kShifts = 2 * (kReach + 1) + 1;  // the finest step goes one beyond
+constexpr int kMostDifference = 40;                    // gray levels: more is not more wrong
+constexpr float kLeastRelief = 2.0f;  // gray levels by which the best place beats the others
+constexpr float kDepthGate = 0.25f;   // (m) that a depth may change in the time between
 
 struct Sample {
   StaticPlace place;
-  float gray = 0.0f;
+  int gray = 0;
 };
 
+/// Pixels of a thing, and where they fall in the earlier image when all are moved.
 struct Samples {
+  /// A pixel's column or the first pixel of its row, for each of the shifts; -1 outside.
+  using Moved = std::array<std::array<int, kSamples>, kShifts>;
+
   std::array<Sample, kSamples> items{};
   std::size_t count = 0;
+  Moved column{};
+  Moved row_start{};
 };
 
-Samples samplesOf(const ThingsInput& in, const RelativePose& motion, const std::uint32_t* begin,
+/// Index of a shift by du or dv in Samples::Moved.
+std::size_t shiftIndex(int pixels) { return static_cast<std::size_t>(pixels + kReach + 1); }
+
+Samples samplesOf(const ThingsInput& in, const SmallFrame& earlier, const std::uint32_t* begin,
                   const std::uint32_t* end) {
+  const RelativePose motion = relativePose(earlier.camera_from_world, in.frame.camera_from_world);
   Samples samples;
   const auto pixels = static_cast<std::size_t>(end - begin);
   for (std::size_t k = 0; k < kSamples && k < pixels; ++k) {
     const std::uint32_t pixel = begin[k * pixels / std::min(kSamples, pixels)];
     const StaticPlace place = staticPlace(pixel, in.frame, in.camera, motion);
     if (place.depth > 0.0f) {
-      samples.items[samples.count++] = {place, static_cast<float>(in.frame.gray[pixel])};
+      samples.items[samples.count++] = {place, in.frame.gray[pixel]};
+    }
+  }
+  const auto moved = [](float at, int by, int size) {
+    const float to = at + static_cast<float>(by);
+    return to >= 0.0f && to < static_cast<float>(size) ? static_cast<int>(to) : -1;
+  };
+  for (int by = -kReach - 1; by <= kReach + 1; ++by) {
+    for (std::size_t k = 0; k < samples.count; ++k) {
+      const StaticPlace& place = samples.items[k].place;
+      const int row = moved(place.v, by, earlier.height);
+      samples.column[shiftIndex(by)][k] = moved(place.u, by, earlier.width);
+      samples.row_start[shiftIndex(by)][k] = row < 0 ? -1 : row * earlier.width;
     }
   }
   return samples;
@@ -42,25 +65,20 @@ Samples samplesOf(const ThingsInput& in, const RelativePose& motion, const std::
 
 /// Mean absolute gray difference when all samples are moved by (du, dv) in the earlier image.
 float costOf(const Samples& samples, const SmallFrame& earlier, int du, int dv) {
-  float sum = 0.0f;
+  const std::array<int, kSamples>& columns = samples.column[shiftIndex(du)];
+  const std::array<int, kSamples>& row_starts = samples.row_start[shiftIndex(dv)];
+  int sum = 0;
   for (std::size_t k = 0; k < samples.count; ++k) {
+    const bool seen = allOf(columns[k] >= 0, row_starts[k] >= 0);
+    const auto at = static_cast<std::size_t>(seen ? row_starts[k] + columns[k] : 0);
     const Sample& sample = samples.items[k];
-    const float u = sample.place.u + static_cast<float>(du);
-    const float v = sample.place.v + static_cast<float>(dv);
-    if (!(u >= 0.0f && v >= 0.0f && u < static_cast<float>(earlier.width) &&
-          v < static_cast<float>(earlier.height))) {
-      sum += kMostDifference / 2;  // not seen: neither right nor wrong
-      continue;
-    }
-    const std::size_t at = static_cast<std::size_t>(v) * static_cast<std::size_t>(earlier.width) +
-                           static_cast<std::size_t>(u);
     const float z = earlier.depth[at];
-    const bool other_surface = z > 0.0f && std::abs(z - sample.place.depth) > kDepthGate;
-    sum += other_surface ? kMostDifference
-                         : std::min(kMostDifference,
-                                    std::abs(sample.gray - static_cast<float>(earlier.gray[at])));
+    const bool other_surface = allOf(z > 0.0f, std::abs(z - sample.place.depth) > kDepthGate);
+    const int difference = std::min(kMostDifference, std::abs(sample.gray - earlier.gray[at]));
+    const int cost = other_surface ? kMostDifference : difference;
+    sum += seen ? cost : kMostDifference / 2;  // not seen: neither right nor wrong
   }
-  return sum / static_cast<float>(samples.count);
+  return static_cast<float>(sum) / static_cast<float>(samples.count);
 }
 
 struct Shift {
@@ -151,8 +169,7 @@ ThingMotion motionOfThing(const ThingsInput& in, const std::uint32_t* begin,
   if (in.frame.gray.empty() || earlier.gray.empty() || age <= 0.0) {
     return result;
   }
-  const Samples samples = samplesOf(
-      in, relativePose(earlier.camera_from_world, in.frame.camera_from_world), begin, end);
+  const Samples samples = samplesOf(in, earlier, begin, end);
   if (samples.count < kSamples / 4) {
     return result;
   }

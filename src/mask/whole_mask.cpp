@@ -2,6 +2,7 @@
 #include "whole_mask.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -43,44 +44,120 @@ void labelGaps(const SmallFrame& frame, const std::vector<std::uint8_t>& before,
   }
 }
 
-bool isUniform(const std::vector<std::uint8_t>& label, int width, int height, int x, int y) {
-  const std::uint8_t own = label[static_cast<std::size_t>(y * width + x)];
-  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, height - 1); ++row) {
-    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, width - 1); ++column) {
-      if (label[static_cast<std::size_t>(row * width + column)] != own) {
-        return false;
-      }
-    }
+/// Flags of the pixels of a row that have the label of all around them.
+void markUniform(const std::vector<std::uint8_t>& label, const SmallFrame& frame, int y,
+                 std::uint8_t* uniform) {
+  const int last = frame.width - 1;
+  const std::uint8_t* here = label.data() + frame.index(y, 0);
+  const std::uint8_t* above = label.data() + frame.index(std::max(y - 1, 0), 0);
+  const std::uint8_t* below = label.data() + frame.index(std::min(y + 1, frame.height - 1), 0);
+  // differences as bits, and no branch: the compiler takes several pixels at a time
+  const auto column = [=](int x, unsigned own) {
+    return (here[x] ^ own) | (above[x] ^ own) | (below[x] ^ own);
+  };
+  const auto all = [=](int left, int x, int right) {
+    const unsigned own = here[x];
+    const unsigned differences = column(left, own) | column(x, own) | column(right, own);
+    return static_cast<std::uint8_t>(differences == 0 ? 1 : 0);
+  };
+  for (int x = 1; x < last; ++x) {
+    uniform[x] = all(x - 1, x, x + 1);
   }
-  return true;
+  uniform[0] = all(0, 0, std::min(1, last));
+  uniform[last] = all(std::max(last - 1, 0), last, last);
 }
 
-/// Label of the one of the four nearest reduced pixels whose depth is most like z.
-std::uint8_t labelLike(float z, const SmallFrame& frame, const std::vector<std::uint8_t>& label,
-                       int x, int y, int beside_x, int beside_y) {
+/// A reduced pixel whose label a pixel of the whole image may get.
+struct Candidate {
+  float depth = 0.0f;
+  float penalty = 0.0f;  ///< Share of the pixel's depth.
+  std::uint8_t label = 0;
+};
+
+/// The reduced pixel and those beside it that have a depth.
+struct Candidates {
+  std::array<Candidate, 4> items{};
+  std::size_t count = 0;
+  std::uint8_t own = 0;  ///< Label where none is like the pixel.
+  bool differ = false;   ///< Not all have the label `own`.
+};
+
+Candidates candidatesFor(const SmallFrame& frame, const std::vector<std::uint8_t>& label, int x,
+                         int y, int beside_x, int beside_y) {
   constexpr float kNearness = 0.01f;  // share of the depth that a step to the side costs
-  const auto own = static_cast<std::size_t>(y * frame.width + x);
-  std::uint8_t best = label[own];
-  if (!(z > 0.0f)) {
-    return best;
-  }
-  float least = std::numeric_limits<float>::max();
+  Candidates candidates;
+  candidates.own = label[frame.index(y, x)];
   const auto consider = [&](int column, int row, float penalty) {
     if (column < 0 || row < 0 || column >= frame.width || row >= frame.height) {
       return;
     }
-    const auto at = static_cast<std::size_t>(row * frame.width + column);
-    const float difference = std::abs(frame.depth[at] - z) + penalty * z;
-    if (frame.depth[at] > 0.0f && difference < least) {
-      least = difference;
-      best = label[at];
+    const std::size_t at = frame.index(row, column);
+    if (frame.depth[at] > 0.0f) {
+      candidates.items[candidates.count++] = {frame.depth[at], penalty, label[at]};
+      candidates.differ |= label[at] != candidates.own;
     }
   };
   consider(x, y, 0.0f);
   consider(beside_x, y, kNearness);
   consider(x, beside_y, kNearness);
   consider(beside_x, beside_y, 2 * kNearness);
+  return candidates;
+}
+
+/// Label of the candidate whose depth is most like z.
+std::uint8_t labelLike(float z, const Candidates& candidates) {
+  std::uint8_t best = candidates.own;
+  if (!(z > 0.0f)) {
+    return best;
+  }
+  float least = std::numeric_limits<float>::max();
+  for (std::size_t k = 0; k < candidates.count; ++k) {
+    const Candidate& candidate = candidates.items[k];
+    const float difference = std::abs(candidate.depth - z) + candidate.penalty * z;
+    if (difference < least) {
+      least = difference;
+      best = candidate.label;
+    }
+  }
   return best;
+}
+
+void fill(std::uint8_t label, const cv::Range& rows, const cv::Range& columns, cv::Mat& mask) {
+  for (int row = rows.start; row < rows.end; ++row) {
+    std::memset(mask.ptr(row) + columns.start, label, static_cast<std::size_t>(columns.size()));
+  }
+}
+
+/// Labels for the pixels of one reduced pixel, a quarter of them after the other: the candidates
+/// are those that are nearest to it.
+void labelByDepth(const cv::Mat& depth, const SmallFrame& frame,
+                  const std::vector<std::uint8_t>& label, int reduction, const cv::Point& at,
+                  const cv::Range& rows, const cv::Range& columns, cv::Mat& mask) {
+  const auto halves = [reduction](const cv::Range& all) {
+    const int middle = std::min(all.start + (reduction + 1) / 2, all.end);
+    return std::array<cv::Range, 2>{cv::Range(all.start, middle), cv::Range(middle, all.end)};
+  };
+  const std::array<cv::Range, 2> row_halves = halves(rows);
+  const std::array<cv::Range, 2> column_halves = halves(columns);
+  for (int down = 0; down < 2; ++down) {
+    for (int right = 0; right < 2; ++right) {
+      const cv::Range& quarter_rows = row_halves[static_cast<std::size_t>(down)];
+      const cv::Range& quarter_columns = column_halves[static_cast<std::size_t>(right)];
+      const Candidates candidates =
+          candidatesFor(frame, label, at.x, at.y, at.x + 2 * right - 1, at.y + 2 * down - 1);
+      if (!candidates.differ) {
+        fill(candidates.own, quarter_rows, quarter_columns, mask);
+        continue;
+      }
+      for (int row = quarter_rows.start; row < quarter_rows.end; ++row) {
+        const auto* z = depth.ptr<float>(row);
+        std::uint8_t* to = mask.ptr(row);
+        for (int column = quarter_columns.start; column < quarter_columns.end; ++column) {
+          to[column] = labelLike(z[column], candidates);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -103,29 +180,27 @@ void labelHoles(const SmallFrame& frame, std::vector<std::uint8_t>& label,
 }
 
 void labelWholeImage(const cv::Mat& depth, const SmallFrame& frame, int reduction,
-                     const std::vector<std::uint8_t>& label, cv::Mat& mask) {
+                     const std::vector<std::uint8_t>& label, std::vector<std::uint8_t>& uniform,
+                     cv::Mat& mask) {
+  uniform.resize(frame.size());
+  // what is left over at the right and lower border belongs to the last reduced pixel
+  const auto end = [reduction](int k, int count, int whole) {
+    return k + 1 == count ? whole : (k + 1) * reduction;
+  };
   for (int y = 0; y < frame.height; ++y) {
-    // what is left over at the right and lower border belongs to the last reduced pixel
-    const int last_row = y + 1 == frame.height ? depth.rows : (y + 1) * reduction;
+    const cv::Range rows(y * reduction, end(y, frame.height, depth.rows));
+    markUniform(label, frame, y, uniform.data());
     for (int x = 0; x < frame.width; ++x) {
       const int first = x * reduction;
-      const int last = x + 1 == frame.width ? depth.cols : first + reduction;
-      if (isUniform(label, frame.width, frame.height, x, y)) {
-        const std::uint8_t own = label[static_cast<std::size_t>(y * frame.width + x)];
-        for (int row = y * reduction; row < last_row; ++row) {
-          std::memset(mask.ptr(row) + first, own, static_cast<std::size_t>(last - first));
-        }
+      if (uniform[static_cast<std::size_t>(x)] == 0) {
+        labelByDepth(depth, frame, label, reduction, {x, y}, rows,
+                     {first, end(x, frame.width, depth.cols)}, mask);
         continue;
       }
-      for (int row = y * reduction; row < last_row; ++row) {
-        const auto* z = depth.ptr<float>(row);
-        std::uint8_t* to = mask.ptr(row);
-        const int beside_y = 2 * (row - y * reduction) < reduction ? y - 1 : y + 1;
-        for (int column = first; column < last; ++column) {
-          const int beside_x = 2 * (column - first) < reduction ? x - 1 : x + 1;
-          to[column] = labelLike(z[column], frame, label, x, y, beside_x, beside_y);
-        }
+      while (x + 1 < frame.width && uniform[static_cast<std::size_t>(x) + 1] != 0) {
+        ++x;  // neighbours that are uniform have one label
       }
+      fill(label[frame.index(y, x)], rows, {first, end(x, frame.width, depth.cols)}, mask);
     }
   }
 }

@@ -18,8 +18,9 @@ void labelHoles(const SmallFrame& frame, std::vector<std::uint8_t>& label,
                 std::vector<std::uint8_t>& before);
 
 /// Each pixel of the whole image gets the label of the reduced pixel around it that is most like it
-/// in depth. @param mask CV_8UC1 of the depth's size; written.
+/// in depth. @param uniform reused. @param mask CV_8UC1 of the depth's size; written.
 void labelWholeImage(const cv::Mat& depth, const SmallFrame& frame, int reduction,
-                     const std::vector<std::uint8_t>& label, cv::Mat& mask);
+                     const std::vector<std::uint8_t>& label, std::vector<std::uint8_t>& uniform,
+                     cv::Mat& mask);
 
 }  // namespace hmcdyn::internal

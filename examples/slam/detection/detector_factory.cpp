@@ -18,8 +18,7 @@
 namespace hmcdyn::slam {
 namespace {
 
-/// Looks at no image: there is no detector, or regions come from depth and flow (MotionRegions) or
-/// from masks (MaskFolder).
+/// Looks at no image: there is no detector, or regions come from masks (MaskFolder).
 class NoDetector final : public ObjectDetector {
  public:
   explicit NoDetector(const char* name) : name_(name) {}
@@ -38,16 +37,12 @@ struct DetectorType {
   std::unique_ptr<ObjectDetector> (*make)(const DetectorOptions&);
 };
 
-constexpr std::array<DetectorType, 8> kTypes{{
+constexpr std::array<DetectorType, 7> kTypes{{
     {"darknet", makeDarknetDetector},
     {"yolo", makeOnnxDetector},
     {"file", makeFileDetector},
     {"command", makeCommandDetector},
     {"hog", makeHogDetector},
-    {"motion",
-     [](const DetectorOptions&) -> std::unique_ptr<ObjectDetector> {
-       return std::make_unique<NoDetector>("motion");
-     }},
     {"masks",
      [](const DetectorOptions& options) -> std::unique_ptr<ObjectDetector> {
        if (options.masks.empty()) {
@@ -131,6 +126,12 @@ std::vector<std::string> detectorTypes() {
   return names;
 }
 
+std::string describeFormerType(const std::string& type) {
+  return type == "motion" ? "detector 'motion' is gone; expected --detector none --filter robust, "
+                            "which finds what moves by a motion mask"
+                          : "";
+}
+
 std::unique_ptr<ObjectDetector> makeDetector(const DetectorOptions& options) {
   checkOptions(options);
   for (const DetectorType& type : kTypes) {
@@ -138,8 +139,11 @@ std::unique_ptr<ObjectDetector> makeDetector(const DetectorOptions& options) {
       return type.make(options);
     }
   }
-  throw std::invalid_argument(fmt::format("detector '{}' is unknown; expected one of {}",
-                                          options.type, fmt::join(detectorTypes(), ", ")));
+  const std::string former = describeFormerType(options.type);
+  throw std::invalid_argument(former.empty()
+                                  ? fmt::format("detector '{}' is unknown; expected one of {}",
+                                                options.type, fmt::join(detectorTypes(), ", "))
+                                  : former);
 }
 
 }  // namespace hmcdyn::slam

@@ -13,6 +13,9 @@ namespace hmcdyn::slam {
 /// What DetectorOptions::type may be.
 std::vector<std::string> detectorTypes();
 
+/// For a type that there was once: what took its place. Empty for any other.
+std::string describeFormerType(const std::string& type);
+
 /// The detector that the options describe, loaded and tried on an empty image, so that a model
 /// which cannot run is found out here.
 /// @throws std::invalid_argument that names the option where the type is unknown, an option that

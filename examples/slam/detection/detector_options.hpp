@@ -27,9 +27,8 @@ struct CommandOptions {
 /// Which detector, and what it reports.
 struct DetectorOptions {
   /// "darknet" (YOLO as .cfg and .weights), "yolo" (YOLOv5 or YOLOv8 as ONNX), "file" (boxes read
-  /// from a text file), "hog" (OpenCV's people detector, needs no model), "motion" (no detector:
-  /// depth segments that move, by MotionRegions), "masks" (label images in place of boxes, by
-  /// MaskFolder), "command" (a program of the user's) or "none".
+  /// from a text file), "hog" (OpenCV's people detector, needs no model), "masks" (label images in
+  /// place of boxes, by MaskFolder), "command" (a program of the user's) or "none".
   std::string type = "none";
   std::filesystem::path model;    ///< darknet: the .cfg; yolo: the .onnx. Trained on COCO.
   std::filesystem::path weights;  ///< darknet: the .weights that belong to the .cfg.

@@ -155,8 +155,8 @@ void declareDetection(CLI::App& app, SlamOptions& options) {
                  "Where boxes come from: darknet, yolo (ONNX) and hog see people; file reads them "
                  "(--boxes); masks reads label images in place of boxes (--masks); command asks a "
                  "program of yours (--command); none needs no model: --filter robust goes by its "
-                 "motion mask alone; motion proposes regions that move (older than that; "
-                 "experimental)")
+                 "motion mask alone")
+      ->check(CLI::Validator(describeFormerType, ""))
       ->check(CLI::IsMember(detectorTypes()))
       ->capture_default_str()
       ->group("Detection");

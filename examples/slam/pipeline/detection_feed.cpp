@@ -26,17 +26,7 @@ std::optional<BoxCarrier> makeCarrier(const SlamOptions& options, const std::str
   BoxCarrier checked(carrier);
   const bool carries =
       options.mode == RunMode::kRealtime || options.bridge > 0.0 || type == "masks";
-  const bool detects = type != "none" && type != "motion";
-  return detects && carries ? std::optional(std::move(checked)) : std::nullopt;
-}
-
-std::optional<MotionRegions> makeRegions(const SlamOptions& options, const std::string& type) {
-  if (type != "motion") {
-    return std::nullopt;
-  }
-  MotionRegionOptions regions;
-  regions.seed = options.seed;
-  return MotionRegions(regions);
+  return type != "none" && carries ? std::optional(std::move(checked)) : std::nullopt;
 }
 
 std::optional<MaskFolder> openMasks(const DetectorOptions& options, const std::string& type,
@@ -64,7 +54,6 @@ DetectionFeed::DetectionFeed(const SlamOptions& options, TypedDetector detector,
       rectifier_(std::move(rectifier)),
       report_(report),
       thread_(std::move(detector.detector), std::move(report)),
-      regions_(makeRegions(options, detector.type)),
       masks_(openMasks(options.detector, detector.type, rectifier_)),
       mask_margin_(options.detector.mask_margin),
       carrier_(makeCarrier(options, detector.type)) {}
@@ -87,7 +76,7 @@ std::vector<DetectionBox> DetectionFeed::rectified(std::vector<DetectionBox> box
 }
 
 void DetectionFeed::ask(const PreparedFrame& frame) {
-  if (regions_ || masks_) {
+  if (masks_) {
     return;
   }
   DetectionRequest request{frame.raw.index, frame.raw.timestamp,
@@ -132,14 +121,6 @@ FrameBoxes DetectionFeed::boxesOf(const PreparedFrame& frame) {
     return maskOf(frame);
   }
   FrameBoxes result;
-  if (regions_) {
-    const StageTimer timer;
-    result.boxes = regions_->update(frame.image);
-    result.found = linesOf(frame.raw.timestamp, result.boxes);
-    result.detected = true;
-    result.carry_time = timer.elapsed("boxes");
-    return result;
-  }
   std::optional<Detection> detection;
   if (realtime_) {
     detection = thread_.tryTakeNewest();

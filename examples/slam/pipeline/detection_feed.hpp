@@ -14,7 +14,6 @@
 #include "slam/detection/detector.hpp"
 #include "slam/detection/frame_mask.hpp"
 #include "slam/detection/mask_folder.hpp"
-#include "slam/detection/motion_regions.hpp"
 #include "slam/output/stage_times.hpp"
 #include "slam/pipeline/options.hpp"
 
@@ -37,7 +36,7 @@ struct FrameBoxes {
   std::size_t bridged = 0;      ///< Boxes that the newest detection missed.
   double detect_wall_ms = 0.0;  ///< Of the detector's thread; 0 without an answer.
   double detect_cpu_ms = 0.0;
-  StageTime carry_time;  ///< What carrying boxes on, or finding regions, took.
+  StageTime carry_time;  ///< What carrying boxes on, or reading a mask, took.
 };
 
 /// The boxes of each frame. Offline every frame waits for its own detection; in real time none
@@ -83,8 +82,7 @@ class DetectionFeed {
   Rectifier rectifier_;
   Report report_;
   DetectionThread thread_;
-  std::optional<MotionRegions> regions_;  ///< Instead of a detector.
-  std::optional<MaskFolder> masks_;       ///< The same.
+  std::optional<MaskFolder> masks_;  ///< Instead of a detector.
   int mask_margin_;
   DetectionCounts mask_counts_;
   std::optional<BoxCarrier> carrier_;  ///< Nothing where no box is ever to be carried.

@@ -35,7 +35,11 @@ cv::Mat noise(int rows, int columns) {
 
 TEST(DetectorFactory, AnUnknownTypeListsTheTypes) {
   EXPECT_TRUE(mentions(refusal(ofType("yolov9")),
-                       {"'yolov9'", "darknet, yolo, file, command, hog, motion, masks, none"}));
+                       {"'yolov9'", "darknet, yolo, file, command, hog, masks, none"}));
+}
+
+TEST(DetectorFactory, TheFormerTypeMotionNamesWhatTookItsPlace) {
+  EXPECT_TRUE(mentions(refusal(ofType("motion")), {"'motion'", "--detector none --filter robust"}));
 }
 
 TEST(DetectorFactory, AFileDetectorNeedsItsFile) {

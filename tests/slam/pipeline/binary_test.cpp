@@ -65,6 +65,12 @@ TEST_F(Binary, DarknetWithoutWeightsNamesTheOption) {
   EXPECT_NE(outcome.text.find("--weights"), std::string::npos) << outcome.text;
 }
 
+TEST_F(Binary, TheFormerDetectorMotionNamesWhatTookItsPlace) {
+  const Outcome outcome = runBinary(toyArguments() + " --detector motion");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(hmcdyn::test::mentions(outcome.text, {"--detector none --filter robust"}));
+}
+
 TEST_F(Binary, MasksOfAFilterThatMakesNoneAreAMistakeOfUsage) {
   const Outcome outcome = runBinary(toyArguments() + " --filter none --write-masks");
   EXPECT_EQ(outcome.exit_code, 2);

@@ -3,7 +3,6 @@
 // the test wants.
 #include "slam/pipeline/detection_feed.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -239,26 +238,6 @@ TEST_F(Feed, ADetectorSeesTheUndistortedImageAndABoxFileTheRawOne) {
   EXPECT_FLOAT_EQ(taken.boxes[0].x_min, expected.x_min);
   EXPECT_FLOAT_EQ(taken.boxes[0].y_max, expected.y_max);
   EXPECT_GT(std::abs(expected.x_min - 40.0f), 1.0f) << "the distortion is to be seen";
-}
-
-TEST_F(Feed, RegionsThatMoveNeedNoDetectorAndNoAsking) {
-  SlamOptions options;
-  options.detector.type = "motion";
-  DetectionFeed detections(options, rectifier(), [](const std::string&) {});
-  FrameBoxes taken;
-  for (std::size_t k = 0; k < 8; ++k) {
-    PreparedFrame frame = frameAt(k);  // at twice the size: it follows a coarse grid of points
-    cv::resize(frame.raw.gray, frame.image.gray, {}, 2.0, 2.0, cv::INTER_CUBIC);
-    cv::resize(frame.raw.depth, frame.image.depth, {}, 2.0, 2.0, cv::INTER_NEAREST);
-    detections.ask(frame);
-    taken = detections.boxesOf(frame);
-    EXPECT_TRUE(taken.detected);
-  }
-  EXPECT_EQ(detections.counts().requested, 0U);
-  ASSERT_EQ(taken.boxes.size(), 1U);
-  const float middle = 0.5f * (taken.boxes[0].x_min + taken.boxes[0].x_max);
-  EXPECT_NEAR(middle, 2.0f * (static_cast<float>(leftAt(7)) + 39.5f), 9.0f);
-  EXPECT_EQ(std::count(taken.found.begin(), taken.found.end(), '\n'), 1) << taken.found;
 }
 
 TEST_F(Feed, ADetectorThatIsNotKnownIsRefused) {
