@@ -25,13 +25,6 @@ if(HMCDYN_QUICK_BUILD)
   if(HMCDYN_HAS_MOLD)
     # Not for what users build: mold does not mind the order of libraries, their linker may.
     set(HMCDYN_TEST_LINK_OPTIONS -fuse-ld=mold)
-    if(HMCDYN_SANITIZE AND HMCDYN_EXECUTABLE_COMPILE_OPTIONS)
-      # Of a template's or an inline function's copies the linker takes the first: the libraries', which are
-      # optimised, before a program's own, which are not. What the libraries do in a test ran at -O0 otherwise.
-      add_link_options(-fuse-ld=mold)
-      string(REPLACE "<OBJECTS> -o <TARGET> <LINK_LIBRARIES>" "<LINK_LIBRARIES> <OBJECTS> -o <TARGET>"
-                     CMAKE_CXX_LINK_EXECUTABLE "${CMAKE_CXX_LINK_EXECUTABLE}")
-    endif()
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     add_compile_options("SHELL:--param ggc-min-heapsize=2000000")
