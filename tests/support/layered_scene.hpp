@@ -33,10 +33,11 @@ class LayeredScene {
 
   /// What `frames` frames ago was seen.
   cv::Mat grayOf(int frames) const {
+    const double thing_x = frames * thing_step_.x();
+    const double thing_y = frames * thing_step_.y();
     return drawImage(kWidth, kHeight, [&](double x, double y) {
-      const Eigen::Vector2d now = Eigen::Vector2d(x, y) + frames * thing_step_;
-      if (isThing(now.x(), now.y())) {
-        return thing_(now.x(), now.y());
+      if (isThing(x + thing_x, y + thing_y)) {
+        return thing_(x + thing_x, y + thing_y);
       }
       const double shift = shiftOf(depthOfWall(y), frames);
       return walls_[wallAt(y)](x + shift, y);
@@ -45,12 +46,13 @@ class LayeredScene {
 
   /// The depth image of that frame (m, CV_32FC1).
   cv::Mat depthOf(int frames) const {
+    const double thing_x = frames * thing_step_.x();
+    const double thing_y = frames * thing_step_.y();
     cv::Mat depth(kHeight, kWidth, CV_32FC1);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        const Eigen::Vector2d now = Eigen::Vector2d(x, y) + frames * thing_step_;
         depth.at<float>(y, x) =
-            static_cast<float>(isThing(now.x(), now.y()) ? kThingDepth : depthOfWall(y));
+            static_cast<float>(isThing(x + thing_x, y + thing_y) ? kThingDepth : depthOfWall(y));
       }
     }
     return depth;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -17,13 +17,12 @@ class Texture {
  public:
   explicit Texture(std::uint32_t seed) {
     constexpr double kTwoPi = 6.283185307179586;
-    constexpr int kWaves = 20;
     Random random(seed);
-    for (int i = 0; i < kWaves; ++i) {
+    for (Wave& wave : waves_) {
       const double frequency = kTwoPi / random.uniform(8.0, 40.0);
       const double angle = random.uniform(0.0, kTwoPi);
-      waves_.push_back(
-          {frequency * std::cos(angle), frequency * std::sin(angle), random.uniform(0.0, kTwoPi)});
+      wave = {frequency * std::cos(angle), frequency * std::sin(angle),
+              random.uniform(0.0, kTwoPi)};
     }
   }
 
@@ -40,7 +39,7 @@ class Texture {
   struct Wave {
     double along_x, along_y, phase;
   };
-  std::vector<Wave> waves_;
+  std::array<Wave, 20> waves_;
 };
 
 /// 8-bit image of a function of the pixel, `gray(x, y)`.
