@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <fmt/format.h>
@@ -32,9 +33,16 @@ Points toMatrix(Span<const Eigen::Vector3d> points, const char* argument) {
 
 /// Root mean square extents (m) of the points along their principal axes, falling.
 Eigen::Vector3d extents(const Points& points) {
+  // Squared, a share of kCollinear is 1e-10 still, far above a double's rounding; the singular
+  // values of a matrix of any width take the compiler longer than the rest of this folder.
   const Points centred = points.colwise() - points.rowwise().mean();
-  return Eigen::JacobiSVD<Points>(centred).singularValues() /
-         std::sqrt(static_cast<double>(points.cols()));
+  const Eigen::Matrix3d scatter =
+      centred * centred.transpose() / static_cast<double>(points.cols());
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .reverse()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
 }
 
 bool coincide(const Eigen::Vector3d& extent) { return extent[0] < kCoincident; }
