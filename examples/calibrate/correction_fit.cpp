@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
@@ -16,6 +17,11 @@ namespace hmcdyn::calibrate {
 namespace {
 
 constexpr std::size_t kLeastSamples = 100;
+/// Points that make a square between nodes known, about three to a corner, and the share of squares
+/// that must be known: else most of the field is a guess from the side, which does more harm to a
+/// run than the error that it is for.
+constexpr std::size_t kPointsOfSquare = 10;
+constexpr double kLeastKnown = 0.5;
 constexpr double kMadToDeviation = 1.4826;  // of a normal distribution
 constexpr double kBiweight = 4.685;         // 95 % efficient with normal noise
 
@@ -42,6 +48,24 @@ std::vector<Equation> equationsOf(const std::vector<DepthSample>& samples, cv::S
     }
   }
   return equations;
+}
+
+/// Squares between nodes that hold enough points.
+int knownSquares(const std::vector<Equation>& equations, cv::Size image,
+                 const CorrectionFitOptions& options) {
+  const auto part = [](double at, int size, int parts) {
+    return std::clamp(static_cast<int>(at / size * parts), 0, parts - 1);
+  };
+  std::map<std::pair<int, int>, std::set<int>> tracks;
+  for (const Equation& equation : equations) {
+    const DepthSample& sample = *equation.sample;
+    tracks[{part(sample.v, image.height, options.rows - 1),
+            part(sample.u, image.width, options.columns - 1)}]
+        .insert(sample.track);
+  }
+  return static_cast<int>(std::count_if(tracks.begin(), tracks.end(), [](const auto& square) {
+    return square.second.size() >= kPointsOfSquare;
+  }));
 }
 
 /// Adds the priors: no scale error, no growth, and nodes that continue their neighbours.
@@ -205,6 +229,14 @@ CorrectionFit fitCorrection(const std::vector<DepthSample>& samples, cv::Size im
         "{} depths away from edges could be triangulated; expected at least {}: the camera must "
         "move sideways, and see texture with depth",
         equations.size(), kLeastSamples));
+  }
+  const int known = knownSquares(equations, image, options);
+  const int squares = (options.rows - 1) * (options.columns - 1);
+  if (known < kLeastKnown * squares) {
+    throw std::runtime_error(fmt::format(
+        "depths of at least {} points could be compared in {} of {} parts of the image; expected "
+        "half of them: move the camera so that texture with depth passes through all of it",
+        kPointsOfSquare, known, squares));
   }
   CorrectionFit fit;
   if (!options.scale_known) {

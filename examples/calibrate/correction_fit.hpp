@@ -38,7 +38,8 @@ struct CorrectionFit {
 /// equally far, only their sum is known, and the priors divide it. Held-out figures are from two
 /// fits, each on every second track.
 /// @param image size of the images (px).
-/// @throws std::runtime_error for fewer than 100 samples away from edges.
+/// @throws std::runtime_error for fewer than 100 samples away from edges, or where there are
+///   fewer than ten points in more than half of the squares between nodes.
 CorrectionFit fitCorrection(const std::vector<DepthSample>& samples, cv::Size image,
                             const CorrectionFitOptions& options = {});
 

@@ -227,6 +227,10 @@ void writeCalibration(const SequenceOptions& options) {
   file.line("depth_factor: %.9g", kDepthFactor);
   file.line("width: %d\nheight: %d", options.width, options.height);
   file.line("frame_rate: %.9g", kFrameRate);
+  if (options.noise != NoiseModel::kKinectSystematic) {
+    file.line(
+        "depth_error: {systematic_linear: 0, systematic_quadratic: 0}  # a calibrated camera's");
+  }
   file.close();
 }
 

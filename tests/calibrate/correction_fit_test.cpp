@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -149,6 +150,19 @@ TEST(CorrectionFit, TooFewDepthsAreAnErrorThatSaysWhatIsMissing) {
   std::vector<DepthSample> samples = samplesOf({}, 1.0, 2.0);
   samples.resize(99);
   EXPECT_THROW(fitCorrection(samples, kImage), std::runtime_error);
+}
+
+TEST(CorrectionFit, DepthsInTheUpperThirdOfTheImageSayNothingOfTheRest) {
+  std::vector<DepthSample> samples = samplesOf({}, 1.0, 2.0);
+  for (DepthSample& sample : samples) {
+    sample.v /= 3.0;  // two of six rows of squares
+  }
+  try {
+    fitCorrection(samples, kImage);
+    FAIL() << "a field of which two thirds are a guess";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("16 of 48"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

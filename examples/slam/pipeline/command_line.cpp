@@ -391,6 +391,15 @@ void prepareOptions(SlamOptions& options) {
   options.filter.seed = options.seed;
 }
 
+SlamOptions withDepthError(SlamOptions options, const DepthErrorModel& depth_error) {
+  options.tracker.map.depth_error = depth_error;
+  options.mapping.adjustment.depth_error = depth_error;
+  options.loops.detector.verification.ransac.depth_error = depth_error;
+  options.loops.closer.bundle.depth_error = depth_error;
+  options.loops.relocalizer.ransac.depth_error = depth_error;
+  return options;
+}
+
 void declareOptions(CLI::App& app, SlamOptions& options) {
   options.detector.classes = {kPersonClassId};
   app.description(

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include <hmcdyn/depth_error.hpp>
 #include <hmcdyn/frame_filter.hpp>
 
 #include "slam/dataset/tum_dataset.hpp"
@@ -70,5 +71,8 @@ struct SlamOptions {
 /// Passes the seed on to every step that draws, and the mode to the threads: offline their answers
 /// are waited for, so that runs repeat; in real time they are taken when they come.
 void prepareOptions(SlamOptions& options);
+
+/// The options of a run with a camera that errs so: whatever weighs a depth goes by one model.
+SlamOptions withDepthError(SlamOptions options, const DepthErrorModel& depth_error);
 
 }  // namespace hmcdyn::slam

@@ -279,6 +279,7 @@ nlohmann::json runSlam(SlamOptions options, const std::function<bool()>& stop,
   for (const std::string& note : input.notes) {
     warn(note);
   }
+  options = withDepthError(std::move(options), input.calibration.depth_error);
   Run run(options, std::move(input), stop, std::move(detector));
   run.counts.box_file = run.input.boxes;
   doFrames(run, stop);
