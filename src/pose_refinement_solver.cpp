@@ -132,7 +132,7 @@ bool PoseManifold::Plus(const double* x, const double* delta, double* x_plus_del
   return true;
 }
 
-#if HMCDYN_CERES_HAS_MANIFOLD
+#ifdef HMCDYN_CERES_HAS_MANIFOLD
 bool PoseManifold::PlusJacobian(const double* x, double* jacobian) const {
   Eigen::Map<RowMajor7x6>{jacobian} = plusJacobian(x);
   return true;

@@ -21,10 +21,9 @@
 // The one place that knows which of Ceres' interfaces there is: Manifold came with 2.1,
 // LocalParameterization left with 2.2.
 #if CERES_VERSION_MAJOR > 2 || (CERES_VERSION_MAJOR == 2 && CERES_VERSION_MINOR >= 1)
-#define HMCDYN_CERES_HAS_MANIFOLD 1
+#define HMCDYN_CERES_HAS_MANIFOLD
 #include <ceres/manifold.h>
 #else
-#define HMCDYN_CERES_HAS_MANIFOLD 0
 #include <ceres/local_parameterization.h>
 #endif
 
@@ -37,7 +36,7 @@ using PoseVector = Eigen::Matrix<double, kPoseSize, 1>;
 PoseVector toPoseVector(const Eigen::Isometry3d& pose);
 Eigen::Isometry3d toIsometry(const PoseVector& pose);
 
-#if HMCDYN_CERES_HAS_MANIFOLD
+#ifdef HMCDYN_CERES_HAS_MANIFOLD
 using PoseManifoldBase = ceres::Manifold;
 #else
 using PoseManifoldBase = ceres::LocalParameterization;
@@ -52,7 +51,7 @@ PoseVector moved(const PoseVector& pose, const Eigen::Matrix<double, 6, 1>& delt
 class PoseManifold final : public PoseManifoldBase {
  public:
   bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
-#if HMCDYN_CERES_HAS_MANIFOLD
+#ifdef HMCDYN_CERES_HAS_MANIFOLD
   int AmbientSize() const override { return kPoseSize; }
   int TangentSize() const override { return 6; }
   bool PlusJacobian(const double* x, double* jacobian) const override;
