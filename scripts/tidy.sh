@@ -112,6 +112,12 @@ export UNITED=$ROOT/build/tidy-united
 if $together; then
   configure "$UNITED" -DCMAKE_UNITY_BUILD=ON
   mapfile -t files < <(unite)
+  # Of what a build generates, the sources that these include.
+  mapfile -t generated < <(sed -n "s|^#include \"$UNITED/\(.*\)\"$|\1|p" "${files[@]}" /dev/null | sort -u)
+  if ((${#generated[@]} > 0)) && ! output=$(cmake --build "$UNITED" --target "${generated[@]}" 2>&1); then
+    echo "$output"
+    exit 1
+  fi
 fi
 
 export CACHE=$BUILD/passed FAILED=$BUILD/failed
