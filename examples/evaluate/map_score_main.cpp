@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <vector>
@@ -102,11 +100,5 @@ int main(int argc, char** argv) {
   if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {
     return *code;
   }
-  try {
-    run(arguments);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "hmcdyn_map_score: %s\n", error.what());
-    return 1;
-  }
+  return hmcdyn::support::exitCodeOf("hmcdyn_map_score", [&] { run(arguments); });
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -137,11 +135,5 @@ int main(int argc, char** argv) {
   if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {
     return *code;
   }
-  try {
-    run(arguments);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "hmcdyn_mask_score: %s\n", error.what());
-    return 1;
-  }
+  return hmcdyn::support::exitCodeOf("hmcdyn_mask_score", [&] { run(arguments); });
 }

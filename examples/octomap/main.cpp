@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -82,11 +80,5 @@ int main(int argc, char** argv) {
   if (const auto code = hmcdyn::support::parseCommandLine(app, argc, argv)) {
     return *code;
   }
-  try {
-    run(arguments);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "hmcdyn_octomap: %s\n", error.what());
-    return 1;
-  }
+  return hmcdyn::support::exitCodeOf("hmcdyn_octomap", [&] { run(arguments); });
 }

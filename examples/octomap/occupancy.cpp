@@ -45,13 +45,11 @@ void check(const OccupancyOptions& options) {
 
 /// @return an empty image where the frame has no mask.
 cv::Mat maskAt(const slam::MaskFolder& masks, double timestamp) {
-  try {
-    cv::Mat mask;
+  cv::Mat mask;
+  if (masks.has(timestamp)) {
     masks.at(timestamp).convertTo(mask, CV_8U);  // 16 bit as well
-    return mask;
-  } catch (const std::runtime_error&) {
-    return {};
   }
+  return mask;
 }
 
 void forEachFrame(const OccupancyOptions& options,

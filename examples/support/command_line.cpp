@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstddef>
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -215,6 +216,16 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
       std::fprintf(stderr, "%sRun with --help for more information.\n", unknown.c_str());
     }
     return kBadUsage;
+  }
+}
+
+int exitCodeOf(const char* program, const std::function<void()>& work) {
+  try {
+    work();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 1;
   }
 }
 

@@ -37,4 +37,8 @@ std::string describeUnknown(const CLI::App& app);
 std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv,
                                     const std::function<void()>& check = {});
 
+/// Does a program's work. @return its exit code: 0, or 1 after "PROGRAM: what was thrown" on
+/// standard error.
+int exitCodeOf(const char* program, const std::function<void()>& work);
+
 }  // namespace hmcdyn::support

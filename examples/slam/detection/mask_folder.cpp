@@ -80,22 +80,29 @@ cv::Mat MaskFolder::read(const std::filesystem::path& file) const {
   return mask;
 }
 
-cv::Mat MaskFolder::at(double timestamp) const {
+const MaskFolder::Entry& MaskFolder::nearest(double timestamp) const {
   const auto later =
       std::lower_bound(entries_.begin(), entries_.end(), timestamp,
                        [](const Entry& entry, double time) { return entry.timestamp < time; });
-  auto nearest = later;
   if (later == entries_.end() ||
       (later != entries_.begin() &&
        timestamp - std::prev(later)->timestamp <= later->timestamp - timestamp)) {
-    nearest = std::prev(later);
+    return *std::prev(later);
   }
-  if (!(std::abs(nearest->timestamp - timestamp) <= time_tolerance_)) {
+  return *later;
+}
+
+bool MaskFolder::has(double timestamp) const {
+  return std::abs(nearest(timestamp).timestamp - timestamp) <= time_tolerance_;
+}
+
+cv::Mat MaskFolder::at(double timestamp) const {
+  if (!has(timestamp)) {
     throw std::runtime_error(fmt::format("{}: is missing, and no mask is within {} s of it",
                                          (folder_ / fmt::format("{:.6f}.png", timestamp)).string(),
                                          time_tolerance_));
   }
-  return read(nearest->file);
+  return read(nearest(timestamp).file);
 }
 
 }  // namespace hmcdyn::slam

@@ -21,6 +21,9 @@ class MaskFolder {
   /// file whose name is no time stamp, or as at() for the first mask.
   MaskFolder(std::filesystem::path folder, cv::Size size, double time_tolerance);
 
+  /// Whether a mask's time stamp is near enough.
+  bool has(double timestamp) const;
+
   /// The mask of the nearest time stamp, as it is in the file.
   /// @throws std::runtime_error naming the file: where none is near enough, or it is damaged, of
   /// another size, or not 8 or 16 bit with one channel.
@@ -32,6 +35,7 @@ class MaskFolder {
     std::filesystem::path file;
   };
 
+  const Entry& nearest(double timestamp) const;
   cv::Mat read(const std::filesystem::path& file) const;
 
   std::filesystem::path folder_;
