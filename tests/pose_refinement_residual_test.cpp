@@ -125,7 +125,7 @@ TEST_P(PointJacobian, AgreesWithCentralDifferences) {
   }
 }
 
-#if HMCDYN_CERES_HAS_MANIFOLD
+#ifdef HMCDYN_CERES_HAS_MANIFOLD
 TEST_P(PointJacobian, PassesTheGradientChecker) {
   // Its result holds Eigen matrices that libceres allocates and this file frees: with
   // AddressSanitizer or AVX, Eigen here would free what Eigen there allocated in another way.
