@@ -11,7 +11,7 @@
 #include <benchmark/benchmark.h>
 #include <opencv2/core.hpp>
 
-#include <hmcdyn/clustering.hpp>
+#include <hmcdyn/steps/clustering.hpp>
 
 #include "peers/nanoflann_dbscan.hpp"
 #include "support/box_points.hpp"

@@ -11,7 +11,7 @@
 #include <benchmark/benchmark.h>
 #include <opencv2/core/types.hpp>
 
-#include <hmcdyn/epipolar.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
 
 namespace {
 

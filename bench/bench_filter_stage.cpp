@@ -13,8 +13,8 @@
 #include <benchmark/benchmark.h>
 #include <opencv2/core.hpp>
 
-#include <hmcdyn/epipolar.hpp>
 #include <hmcdyn/filter_stage.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
 
 #include "peers/handmade_stage.hpp"
 #include "peers/nanoflann_dbscan.hpp"

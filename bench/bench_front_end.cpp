@@ -24,9 +24,9 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include <hmcdyn/epipolar.hpp>
-#include <hmcdyn/fundamental.hpp>
-#include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
+#include <hmcdyn/steps/fundamental.hpp>
+#include <hmcdyn/steps/optical_flow.hpp>
 
 #include "slam/features/orb_extractor.hpp"
 

@@ -17,8 +17,9 @@ set(not_core)
 foreach(header IN LISTS HMCDYN_VISION_HEADERS HMCDYN_OPTIMIZATION_HEADERS ITEMS hmcdyn.hpp)
   list(APPEND not_core PATTERN "${header}" EXCLUDE)
   if(NOT header IN_LIST left_out)
+    get_filename_component(folder "${header}" DIRECTORY)
     install(FILES "${HMCDYN_INCLUDE_DIR}/hmcdyn/${header}"
-            DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hmcdyn" COMPONENT dev)
+            DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hmcdyn/${folder}" COMPONENT dev)
   endif()
 endforeach()
 install(

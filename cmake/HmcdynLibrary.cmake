@@ -10,19 +10,19 @@ set(HMCDYN_CORE_HEADERS
     types.hpp
     plain_matrix.hpp
     pose.hpp
-    epipolar.hpp
-    ego_motion.hpp
-    box_dynamism.hpp
+    steps/epipolar.hpp
+    steps/ego_motion.hpp
+    steps/box_dynamism.hpp
     regions.hpp
-    clustering.hpp
-    cluster_filter.hpp
-    weights.hpp
-    peer_rules.hpp
+    steps/clustering.hpp
+    steps/cluster_filter.hpp
+    steps/weights.hpp
+    peers/peer_rules.hpp
     filter_stage.hpp
     depth_error.hpp
-    surface_depth.hpp
-    motion_belief.hpp
-    belief_verdict.hpp
+    votes/surface_depth.hpp
+    votes/motion_belief.hpp
+    votes/belief_verdict.hpp
     detail/bit_set_clusters.hpp
     detail/bits.hpp
     detail/clustering_result.hpp
@@ -35,9 +35,15 @@ set(HMCDYN_CORE_HEADERS
     detail/planar_points.hpp
     detail/requirements.hpp
     detail/union_find.hpp)
-set(HMCDYN_VISION_HEADERS optical_flow.hpp fundamental.hpp label_image.hpp
-                          dynamic_feature_filter.hpp motion_mask.hpp box_carrier.hpp compact.hpp
-                          frame_filter.hpp)
+set(HMCDYN_VISION_HEADERS
+    steps/box_carrier.hpp
+    steps/optical_flow.hpp
+    steps/fundamental.hpp
+    label_image.hpp
+    motion_mask.hpp
+    dynamic_feature_filter.hpp
+    compact.hpp
+    frame_filter.hpp)
 set(HMCDYN_OPTIMIZATION_HEADERS pose_refinement.hpp)
 
 # The compiled components see Eigen by another name: no function of theirs that works on Eigen's types has the
@@ -68,17 +74,17 @@ set(HMCDYN_COMPONENTS core)
 
 if(HMCDYN_WITH_VISION)
   add_library(
-    hmcdyn_vision src/optical_flow.cpp src/eight_point.cpp src/flow_selection.cpp
-                  src/fundamental.cpp src/label_image.cpp src/frame_regions.cpp src/camera_motion.cpp src/frame_camera.cpp
-                  src/dynamic_feature_filter.cpp src/frame_filter/box_carrier.cpp
-                  src/frame_filter/decision.cpp src/frame_filter/features.cpp
-                  src/frame_filter/frame_filter.cpp src/frame_filter/history.cpp
-                  src/frame_filter/input.cpp
-                  src/frame_filter/mask_verdict.cpp src/frame_filter/options.cpp
-                  src/mask/departure.cpp src/mask/depth_history.cpp src/mask/evidence.cpp
-                  src/mask/motion_mask.cpp src/mask/named.cpp src/mask/options.cpp
-                  src/mask/small_frame.cpp src/mask/smoothing.cpp src/mask/thing_motion.cpp
-                  src/mask/things.cpp src/mask/whole_mask.cpp)
+    hmcdyn_vision
+    src/flow/optical_flow.cpp src/flow/flow_selection.cpp
+    src/two_view/eight_point.cpp src/two_view/fundamental.cpp src/two_view/camera_motion.cpp
+    src/regions/label_image.cpp src/regions/frame_regions.cpp
+    src/mask/departure.cpp src/mask/depth_history.cpp src/mask/evidence.cpp
+    src/mask/motion_mask.cpp src/mask/named.cpp src/mask/options.cpp src/mask/small_frame.cpp
+    src/mask/smoothing.cpp src/mask/thing_motion.cpp src/mask/things.cpp src/mask/whole_mask.cpp
+    src/frame_filter/frame_camera.cpp src/frame_filter/dynamic_feature_filter.cpp
+    src/frame_filter/box_carrier.cpp src/frame_filter/decision.cpp src/frame_filter/features.cpp
+    src/frame_filter/frame_filter.cpp src/frame_filter/history.cpp src/frame_filter/input.cpp
+    src/frame_filter/mask_verdict.cpp src/frame_filter/options.cpp)
   target_include_directories(hmcdyn_vision PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_link_libraries(
     hmcdyn_vision
@@ -92,16 +98,17 @@ endif()
 if(HMCDYN_WITH_OPTIMIZATION)
   add_library(
     hmcdyn_optimization
-    src/pose_refinement.cpp src/pose_refinement_collapsed.cpp src/pose_refinement_input.cpp
-    src/pose_refinement_kernel.cpp src/pose_refinement_plain.cpp src/pose_refinement_solver.cpp)
+    src/pose/pose_refinement.cpp src/pose/collapsed.cpp src/pose/input.cpp
+    src/pose/kernel.cpp src/pose/plain.cpp src/pose/solver.cpp)
   # The square root as one instruction: errno is not read. Sums keep the order that is written.
   set_source_files_properties(
-    src/pose_refinement_collapsed.cpp src/pose_refinement_kernel.cpp
+    src/pose/collapsed.cpp src/pose/kernel.cpp
     PROPERTIES COMPILE_OPTIONS -fno-math-errno)
   target_link_libraries(
     hmcdyn_optimization
     PUBLIC hmcdyn_core
     PRIVATE ${CERES_LIBRARIES} $<BUILD_INTERFACE:hmcdyn_warnings>)
+  target_include_directories(hmcdyn_optimization PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_compile_definitions(hmcdyn_optimization PRIVATE ${HMCDYN_EIGEN_OF_THE_LIBRARY})
   hmcdyn_component(optimization hmcdyn_optimization)
   list(APPEND HMCDYN_COMPONENTS optimization)

@@ -30,7 +30,7 @@ function target(link, path, hash) {
   if (match(link, /#.*/)) { hash = substr(link, RSTART + 1); link = substr(link, 1, RSTART - 1) }
   path = link == "" ? document : resolve(link)
   if (path ~ /\.md$/) return "@ref " stem(path) "_" (hash == "" ? "page" : hash)
-  if (path ~ /^include\/hmcdyn\/[^\/]*\.hpp$/) return "@ref " path
+  if (path ~ /^include\/hmcdyn\/((steps|votes|peers)\/)?[^\/]*\.hpp$/) return "@ref " path
   if (path ~ /^docs\/pictures\//) { sub(/^docs\//, "", path); return path }
   if (list) print path
   return "files/" path

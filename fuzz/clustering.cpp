@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <hmcdyn/clustering.hpp>
+#include <hmcdyn/steps/clustering.hpp>
 
 #include "fuzz_input.hpp"
 

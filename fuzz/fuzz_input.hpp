@@ -14,9 +14,9 @@
 
 #include <fuzzer/FuzzedDataProvider.h>
 
-#include <hmcdyn/motion_belief.hpp>
 #include <hmcdyn/regions.hpp>
 #include <hmcdyn/types.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
 
 namespace hmcdyn::fuzz {
 

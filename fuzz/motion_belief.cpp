@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <hmcdyn/belief_verdict.hpp>
-#include <hmcdyn/motion_belief.hpp>
+#include <hmcdyn/votes/belief_verdict.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
 
 #include "fuzz_input.hpp"
 

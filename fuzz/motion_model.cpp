@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include <hmcdyn/ego_motion.hpp>
-#include <hmcdyn/epipolar.hpp>
-#include <hmcdyn/fundamental.hpp>
+#include <hmcdyn/steps/ego_motion.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
+#include <hmcdyn/steps/fundamental.hpp>
 
 #include "fuzz_input.hpp"
 

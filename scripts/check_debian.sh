@@ -27,7 +27,7 @@ cp -r include src tests "$root/hmcdyn"
 # shellcheck disable=SC2016 # $file is the inner shell's
 chroot "$root" sh -ec 'cd /hmcdyn
   flags="-std=c++17 -Wall -Wextra -Iinclude -Isrc -isystem /usr/include/opencv4 -isystem /usr/include/eigen3"
-  for file in src/*.cpp; do g++ $flags -fsyntax-only "$file"; done
+  for file in src/*/*.cpp; do g++ $flags -fsyntax-only "$file"; done
   g++ $flags tests/consumers/core/main.cpp -o consumer && ./consumer
   g++ --version | head -n 1
   dpkg-query -W libeigen3-dev libnanoflann-dev libopencv-dev libceres-dev'

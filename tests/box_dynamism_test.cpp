@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/box_dynamism.hpp>
+#include <hmcdyn/steps/box_dynamism.hpp>
 
 #include "constants.hpp"
 #include "invalid_argument.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "camera_motion.hpp"
+#include "two_view/camera_motion.hpp"
 
 #include <cstdint>
 #include <random>

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/cluster_filter.hpp>
+#include <hmcdyn/steps/cluster_filter.hpp>
 
 #include "invalid_argument.hpp"
 

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
-#include <hmcdyn/clustering.hpp>
+#include <hmcdyn/steps/clustering.hpp>
 
 #include "brute_force_dbscan.hpp"
 #include "constants.hpp"

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
-#include <hmcdyn/clustering.hpp>
+#include <hmcdyn/steps/clustering.hpp>
 
 #include "constants.hpp"
 #include "invalid_argument.hpp"

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <hmcdyn/ego_motion.hpp>
+#include <hmcdyn/steps/ego_motion.hpp>
 
 #include "invalid_argument.hpp"
 #include "two_view_scene.hpp"

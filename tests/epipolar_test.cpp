@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <hmcdyn/epipolar.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
 
 #include "invalid_argument.hpp"
 #include "random.hpp"

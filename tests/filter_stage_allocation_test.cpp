@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/epipolar.hpp>
 #include <hmcdyn/filter_stage.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
 
 #include "counting_allocator.hpp"
 #include "filter_options.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "flow_selection.hpp"
+#include "flow/flow_selection.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "frame_regions.hpp"
+#include "regions/frame_regions.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include <hmcdyn/fundamental.hpp>
+#include <hmcdyn/steps/fundamental.hpp>
 
 #include "invalid_argument.hpp"
 #include "motion_model_settings.hpp"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/fundamental.hpp>
+#include <hmcdyn/steps/fundamental.hpp>
 
 #include "invalid_argument.hpp"
 #include "motion_model_settings.hpp"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/motion_belief.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
 
 #include "belief_frame.hpp"
 #include "constants.hpp"

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/belief_verdict.hpp>
-#include <hmcdyn/motion_belief.hpp>
+#include <hmcdyn/votes/belief_verdict.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
 
 #include "invalid_argument.hpp"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/steps/optical_flow.hpp>
 
 #include "invalid_argument.hpp"
 #include "texture.hpp"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/peer_rules.hpp>
+#include <hmcdyn/peers/peer_rules.hpp>
 
 #include "constants.hpp"
 #include "invalid_argument.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The collapsed linearisation against the plain sum over the points, and its square root. Built
 // twice: with the vector lanes, and with one double a lane.
-#include "pose_refinement_kernel.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,8 +15,9 @@
 
 #include <hmcdyn/pose_refinement.hpp>
 
-#include "pose_refinement_residual.hpp"
-#include "pose_refinement_square_root.hpp"
+#include "pose/kernel.hpp"
+#include "pose/residual.hpp"
+#include "pose/square_root.hpp"
 #include "pose_scene.hpp"
 
 namespace hmcdyn::detail {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The geometry of eq. 9 and the manifold: hand-computed rows, derivatives against differences.
-#include "pose_refinement_residual.hpp"
-
 #include <array>
 #include <cmath>
 #include <memory>
@@ -15,7 +13,8 @@
 
 #include <hmcdyn/pose_refinement.hpp>
 
-#include "pose_refinement_solver.hpp"
+#include "pose/residual.hpp"
+#include "pose/solver.hpp"
 #include "pose_scene.hpp"
 
 namespace hmcdyn::detail {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/surface_depth.hpp>
+#include <hmcdyn/votes/surface_depth.hpp>
 
 #include "constants.hpp"
 #include "invalid_argument.hpp"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/weights.hpp>
+#include <hmcdyn/steps/weights.hpp>
 
 #include "constants.hpp"
 #include "invalid_argument.hpp"

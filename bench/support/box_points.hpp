@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include <hmcdyn/clustering.hpp>
+#include <hmcdyn/steps/clustering.hpp>
 
 namespace hmcdyn::bench {
 

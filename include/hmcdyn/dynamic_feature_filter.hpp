@@ -8,17 +8,17 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include <hmcdyn/belief_verdict.hpp>
 #include <hmcdyn/detail/requirements.hpp>
-#include <hmcdyn/ego_motion.hpp>
 #include <hmcdyn/filter_stage.hpp>
-#include <hmcdyn/fundamental.hpp>
-#include <hmcdyn/motion_belief.hpp>
-#include <hmcdyn/optical_flow.hpp>
 #include <hmcdyn/pose.hpp>
 #include <hmcdyn/regions.hpp>
-#include <hmcdyn/surface_depth.hpp>
+#include <hmcdyn/steps/ego_motion.hpp>
+#include <hmcdyn/steps/fundamental.hpp>
+#include <hmcdyn/steps/optical_flow.hpp>
 #include <hmcdyn/types.hpp>
+#include <hmcdyn/votes/belief_verdict.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
+#include <hmcdyn/votes/surface_depth.hpp>
 
 namespace hmcdyn {
 

@@ -13,14 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include <hmcdyn/box_dynamism.hpp>
-#include <hmcdyn/cluster_filter.hpp>
-#include <hmcdyn/clustering.hpp>
 #include <hmcdyn/detail/laned_sum.hpp>
 #include <hmcdyn/detail/requirements.hpp>
-#include <hmcdyn/peer_rules.hpp>
+#include <hmcdyn/peers/peer_rules.hpp>
+#include <hmcdyn/steps/box_dynamism.hpp>
+#include <hmcdyn/steps/cluster_filter.hpp>
+#include <hmcdyn/steps/clustering.hpp>
+#include <hmcdyn/steps/weights.hpp>
 #include <hmcdyn/types.hpp>
-#include <hmcdyn/weights.hpp>
 
 namespace hmcdyn {
 

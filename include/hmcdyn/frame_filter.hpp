@@ -11,12 +11,12 @@
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/types.hpp>
 
-#include <hmcdyn/box_carrier.hpp>
 #include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/dynamic_feature_filter.hpp>
 #include <hmcdyn/motion_mask.hpp>
 #include <hmcdyn/pose.hpp>
 #include <hmcdyn/regions.hpp>
+#include <hmcdyn/steps/box_carrier.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include <hmcdyn/box_dynamism.hpp>
 #include <hmcdyn/detail/requirements.hpp>
+#include <hmcdyn/steps/box_dynamism.hpp>
 #include <hmcdyn/types.hpp>
 
 namespace hmcdyn {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // surface_depth.hpp, motion_belief.hpp, belief_verdict.hpp, depth_error.hpp
-#include <hmcdyn/belief_verdict.hpp>
 #include <hmcdyn/depth_error.hpp>
-#include <hmcdyn/motion_belief.hpp>
-#include <hmcdyn/surface_depth.hpp>
+#include <hmcdyn/votes/belief_verdict.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
+#include <hmcdyn/votes/surface_depth.hpp>
 
 #include "bindings.hpp"
 #include "key_points.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // box_dynamism.hpp, regions.hpp, label_image.hpp
-#include <hmcdyn/box_dynamism.hpp>
 #include <hmcdyn/frame_filter.hpp>
 #include <hmcdyn/label_image.hpp>
 #include <hmcdyn/regions.hpp>
+#include <hmcdyn/steps/box_dynamism.hpp>
 
 #include "bindings.hpp"
 #include "key_points.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // clustering.hpp, cluster_filter.hpp, weights.hpp
-#include <hmcdyn/cluster_filter.hpp>
-#include <hmcdyn/clustering.hpp>
-#include <hmcdyn/weights.hpp>
+#include <hmcdyn/steps/cluster_filter.hpp>
+#include <hmcdyn/steps/clustering.hpp>
+#include <hmcdyn/steps/weights.hpp>
 
 #include "bindings.hpp"
 #include "structs.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // epipolar.hpp, ego_motion.hpp
-#include <hmcdyn/ego_motion.hpp>
-#include <hmcdyn/epipolar.hpp>
+#include <hmcdyn/steps/ego_motion.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
 
 #include "bindings.hpp"
 #include "key_points.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // filter_stage.hpp, and the options of peer_rules.hpp
 #include <hmcdyn/filter_stage.hpp>
-#include <hmcdyn/peer_rules.hpp>
+#include <hmcdyn/peers/peer_rules.hpp>
 
 #include "bindings.hpp"
 #include "key_points.hpp"

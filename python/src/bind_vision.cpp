@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // optical_flow.hpp, fundamental.hpp, dynamic_feature_filter.hpp
 #include <hmcdyn/dynamic_feature_filter.hpp>
-#include <hmcdyn/fundamental.hpp>
 #include <hmcdyn/label_image.hpp>
-#include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/steps/fundamental.hpp>
+#include <hmcdyn/steps/optical_flow.hpp>
 
 #include "bindings.hpp"
 #include "key_points.hpp"

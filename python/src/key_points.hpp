@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <hmcdyn/epipolar.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
 #include <hmcdyn/types.hpp>
 
 #include "arrays.hpp"

@@ -9,7 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include <hmcdyn/box_carrier.hpp>
+#include <hmcdyn/steps/box_carrier.hpp>
 
 namespace hmcdyn {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <hmcdyn/weights.hpp>
+#include <hmcdyn/steps/weights.hpp>
 
 namespace hmcdyn::internal {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <hmcdyn/frame_filter.hpp>
 
-#include "frame_regions.hpp"
+#include "regions/frame_regions.hpp"
 
 namespace hmcdyn {
 

@@ -13,7 +13,7 @@
 #include "frame_filter/history.hpp"
 #include "frame_filter/input.hpp"
 #include "frame_filter/mask_verdict.hpp"
-#include "frame_regions.hpp"
+#include "regions/frame_regions.hpp"
 
 namespace hmcdyn {
 

@@ -11,8 +11,8 @@
 #include <Eigen/Geometry>
 
 #include <hmcdyn/dynamic_feature_filter.hpp>
-#include <hmcdyn/motion_belief.hpp>
-#include <hmcdyn/optical_flow.hpp>
+#include <hmcdyn/steps/optical_flow.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
 
 namespace hmcdyn::internal {
 

@@ -9,8 +9,8 @@
 #include <hmcdyn/filter_stage.hpp>
 
 #include "frame_filter/decision.hpp"
-#include "frame_regions.hpp"
 #include "image_text.hpp"
+#include "regions/frame_regions.hpp"
 
 namespace hmcdyn::internal {
 namespace {

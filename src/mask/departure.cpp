@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "departure.hpp"
+#include "mask/departure.hpp"
 
 #include <algorithm>
 #include <array>

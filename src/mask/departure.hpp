@@ -6,8 +6,8 @@
 
 #include <hmcdyn/motion_mask.hpp>
 
-#include "evidence.hpp"
-#include "small_frame.hpp"
+#include "mask/evidence.hpp"
+#include "mask/small_frame.hpp"
 
 namespace hmcdyn::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "depth_history.hpp"
+#include "mask/depth_history.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "small_frame.hpp"
+#include "mask/small_frame.hpp"
 
 namespace hmcdyn::internal {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evidence.hpp"
+#include "mask/evidence.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "departure.hpp"
-#include "named.hpp"
+#include "mask/departure.hpp"
+#include "mask/named.hpp"
 
 namespace hmcdyn::internal {
 namespace {

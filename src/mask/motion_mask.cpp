@@ -10,15 +10,15 @@
 
 #include <hmcdyn/motion_mask.hpp>
 
-#include "depth_history.hpp"
-#include "evidence.hpp"
 #include "image_text.hpp"
-#include "named.hpp"
-#include "small_frame.hpp"
-#include "smoothing.hpp"
-#include "thing_motion.hpp"
-#include "things.hpp"
-#include "whole_mask.hpp"
+#include "mask/depth_history.hpp"
+#include "mask/evidence.hpp"
+#include "mask/named.hpp"
+#include "mask/small_frame.hpp"
+#include "mask/smoothing.hpp"
+#include "mask/thing_motion.hpp"
+#include "mask/things.hpp"
+#include "mask/whole_mask.hpp"
 
 namespace hmcdyn {
 namespace {

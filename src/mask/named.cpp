@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "named.hpp"
+#include "mask/named.hpp"
 
 #include <algorithm>
 #include <cmath>

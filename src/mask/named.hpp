@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "small_frame.hpp"
+#include "mask/small_frame.hpp"
 
 namespace hmcdyn::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "small_frame.hpp"
+#include "mask/small_frame.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "smoothing.hpp"
+#include "mask/smoothing.hpp"
 
 #include <algorithm>
 #include <array>

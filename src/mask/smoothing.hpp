@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "evidence.hpp"
+#include "mask/evidence.hpp"
 
 namespace hmcdyn::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "thing_motion.hpp"
+#include "mask/thing_motion.hpp"
 
 #include <algorithm>
 #include <array>

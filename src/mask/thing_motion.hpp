@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "things.hpp"
+#include "mask/things.hpp"
 
 namespace hmcdyn::internal {
 

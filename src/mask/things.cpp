@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "things.hpp"
+#include "mask/things.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <numeric>
 #include <utility>
 
-#include "named.hpp"
+#include "mask/named.hpp"
 
 namespace hmcdyn::internal {
 namespace {

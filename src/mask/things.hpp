@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "evidence.hpp"
+#include "mask/evidence.hpp"
 
 namespace hmcdyn::internal {
 

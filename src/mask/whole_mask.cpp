@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "whole_mask.hpp"
+#include "mask/whole_mask.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "small_frame.hpp"
+#include "mask/small_frame.hpp"
 
 namespace hmcdyn::internal {
 

@@ -10,7 +10,7 @@ mkdir -p "$scratch"
 status=0
 
 # Every public header stands behind the check; hmcdyn.hpp is made of others.
-without=$(grep -L '#include <hmcdyn/detail/requirements.hpp>' "$include"/hmcdyn/*.hpp | grep -v '/hmcdyn\.hpp$' || true)
+without=$(grep -L '#include <hmcdyn/detail/requirements.hpp>' "$include"/hmcdyn/{,steps/,votes/,peers/}*.hpp | grep -v '/hmcdyn\.hpp$' || true)
 if [[ -n $without ]]; then
   echo "without detail/requirements.hpp: $without"
   status=1

@@ -10,7 +10,7 @@ shift 4
 mkdir -p "$scratch"
 command -v objcopy >/dev/null || { echo "skipped: no objcopy here"; exit 0; }
 
-types=$(awk -f "$here/public_types.awk" "$include"/hmcdyn/*.hpp | LC_ALL=C sort -u)
+types=$(awk -f "$here/public_types.awk" "$include"/hmcdyn/{,steps/,votes/,peers/}*.hpp | LC_ALL=C sort -u)
 for must in EarlierFrame MotionBeliefWorkspace Pose PoseRefinementResult PoseRefinementWorkspace TwoViewModel; do
   grep -qx "$must" <<<"$types" || { echo "public_types.awk no longer finds $must"; exit 1; }
 done

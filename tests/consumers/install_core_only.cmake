@@ -13,7 +13,7 @@ execute_process(COMMAND "${SCRATCH}/core_only_build/bin/01_arrays_in_labels_out"
                         COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --install "${SCRATCH}/core_only_build" --prefix
                         "${SCRATCH}/core_only" COMMAND_ERROR_IS_FATAL ANY)
-foreach(header IN ITEMS hmcdyn.hpp optical_flow.hpp pose_refinement.hpp)
+foreach(header IN ITEMS hmcdyn.hpp steps/optical_flow.hpp pose_refinement.hpp)
   if(EXISTS "${SCRATCH}/core_only/include/hmcdyn/${header}")
     message(FATAL_ERROR "core alone installed ${header}, which it cannot compile")
   endif()

@@ -8,7 +8,7 @@ fields=$(awk '
   /^struct [A-Za-z]+Options \{/ { name = $2; next }
   /^};/ { name = "" }
   name && match($0, /^  [A-Za-z_:0-9]+ [a-z_0-9]+( =|;)/) { split($0, word, /[ ;]+/); print name, word[3] }
-' "$source"/include/hmcdyn/*.hpp)
+' "$source"/include/hmcdyn/{,steps/,votes/,peers/}*.hpp)
 
 (($(wc -l <<<"$fields") > 70)) || { echo "only these options were found: $fields" >&2 && exit 1; }
 failed=0

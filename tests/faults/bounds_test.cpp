@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <hmcdyn/clustering.hpp>
 #include <hmcdyn/regions.hpp>
+#include <hmcdyn/steps/clustering.hpp>
 
 namespace hmcdyn::faults {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include <hmcdyn/box_carrier.hpp>
+#include <hmcdyn/steps/box_carrier.hpp>
 
 #include "drawn_texture.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <hmcdyn/motion_belief.hpp>
+#include <hmcdyn/votes/motion_belief.hpp>
 
 namespace hmcdyn::test {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <hmcdyn/fundamental.hpp>
+#include <hmcdyn/steps/fundamental.hpp>
 
 #include "two_view_scene.hpp"
 

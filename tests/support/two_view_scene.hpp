@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <hmcdyn/epipolar.hpp>
+#include <hmcdyn/steps/epipolar.hpp>
 #include <hmcdyn/types.hpp>
 
 #include "random.hpp"

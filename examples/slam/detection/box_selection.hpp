@@ -5,7 +5,7 @@
 
 #include <opencv2/core.hpp>
 
-#include <hmcdyn/box_carrier.hpp>
+#include <hmcdyn/steps/box_carrier.hpp>
 #include <hmcdyn/types.hpp>
 
 #include "slam/detection/detector_options.hpp"

@@ -14,8 +14,8 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include <hmcdyn/box_carrier.hpp>
 #include <hmcdyn/label_image.hpp>
+#include <hmcdyn/steps/box_carrier.hpp>
 
 #include "slam/dataset/image_file.hpp"
 #include "slam/detection/box_selection.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <hmcdyn/box_carrier.hpp>
+#include <hmcdyn/steps/box_carrier.hpp>
 
 #include "slam/camera/rectifier.hpp"
 #include "slam/dataset/frame.hpp"
