@@ -43,7 +43,11 @@ struct MaskEvidenceOptions {
   float free_weight = 1.5f;  ///< Of a surface where there was free space.
   /// Of an earlier surface whose place is free now; counts for the surface of its depth beside it.
   float departure_weight = 1.0f;
-  float mismatch_weight = 0.15f;  ///< Of a surface that has not the gray level of the earlier one.
+  /// Of a surface that has not the gray level of the earlier one, times ln(0.3 / share of all
+  /// surfaces that have not): 0 where light or exposure changed, at most 1 ...
+  float mismatch_weight = 0.35f;
+  /// ... and as it is, in frames with boxes or masks: those say more.
+  float named_mismatch_weight = 0.15f;
   /// Weight of a surface that was there before: from `same_weight_young` for the frame before to 1
   /// for one of age `same_age` (s). Short ages say little: a moving surface covers itself.
   float same_weight_young = 0.4f;

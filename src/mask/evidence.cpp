@@ -13,6 +13,7 @@ namespace {
 
 constexpr float kFarWeight = 0.5f;           // of "static" beyond max_depth
 constexpr std::size_t kFewestToDoubt = 200;  // surfaces, before their agreement means anything
+constexpr float kMismatchOfMoving = 0.3f;    // share of a moving surface, where it has texture
 // Ages (s) between which a thing moves by more than its edges flicker, and is still near its place.
 constexpr double kYoungestDeparture = 0.06;
 constexpr double kOldestDeparture = 0.5;
@@ -20,6 +21,7 @@ constexpr double kOldestDeparture = 0.5;
 struct Tally {
   std::size_t same = 0;
   std::size_t compared = 0;
+  std::size_t mismatch = 0;  ///< Same surfaces with another gray level.
 };
 
 /// What stays the same between the pixels of one comparison.
@@ -58,6 +60,7 @@ class Comparer {
       const Tally of_row = row(y, with, image);
       tally.same += of_row.same;
       tally.compared += of_row.compared;
+      tally.mismatch += of_row.mismatch;
     }
     return tally;
   }
@@ -135,9 +138,8 @@ class Comparer {
     ++tally.same;
     if (with.by_gray && differsInGray(i, cell)) {
       comparisons.mismatch = static_cast<std::uint8_t>(comparisons.mismatch | with.bit);
-      evidence.value += o.mismatch_weight;
-      evidence.weight += o.mismatch_weight;
-      return;
+      ++tally.mismatch;
+      return;  // what it says is known once all are counted: addMismatches()
     }
     comparisons.same = static_cast<std::uint8_t>(comparisons.same | with.bit);
     const float drift = !named_.empty() && named_[i] == kNamed ? o.named_drift : o.drift;
@@ -163,6 +165,30 @@ class Comparer {
 bool areComparable(const SmallFrame& frame, const SmallFrame& earlier, float tolerance) {
   return !frame.gray.empty() && !earlier.gray.empty() &&
          std::abs(frame.brightness - earlier.brightness) <= tolerance;
+}
+
+/// A surface with another gray level moves, or the images differ there for reasons of their own:
+/// light, exposure, blur, a pose that is not exact. How often they do is seen on all surfaces,
+/// since those believed to be the room would be the ones without a mismatch; the weight is the
+/// logarithm of the likelihood ratio. Where boxes or masks say what may move, gray levels say
+/// little.
+float mismatchWeight(const Tally& tally, bool is_named, const MaskEvidenceOptions& options) {
+  if (is_named) {
+    return options.named_mismatch_weight;
+  }
+  if (tally.same < kFewestToDoubt) {
+    return 0.0f;
+  }
+  const float share = static_cast<float>(tally.mismatch + 1) / static_cast<float>(tally.same);
+  return std::clamp(options.mismatch_weight * std::log(kMismatchOfMoving / share), 0.0f, 1.0f);
+}
+
+void addMismatches(float weight, std::uint8_t bit, EvidenceImage& image) {
+  for (std::size_t i = 0; i < image.evidence.size(); ++i) {
+    const float added = (image.comparisons[i].mismatch & bit) != 0 ? weight : 0.0f;
+    image.evidence[i].value += added;
+    image.evidence[i].weight += added;
+  }
 }
 
 }  // namespace
@@ -197,6 +223,7 @@ EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& cam
                       o.same_weight_young + (1.0f - o.same_weight_young) * grown, tolerance,
                       areComparable(frame, *other, options.depth.gray_tolerance)},
                      image);
+    addMismatches(mismatchWeight(tally, !named.empty(), o), bit, image);
     if (o.departure_weight > 0.0f && age >= kYoungestDeparture && age <= kOldestDeparture) {
       addDepartures(frame, camera, *other, bit, options, image);
     }

@@ -34,6 +34,8 @@ void checkEvidence(const MaskEvidenceOptions& o) {
                     o.departure_weight, "0 or more");
   requireMaskOption(isNotNegative(o.mismatch_weight), "evidence.mismatch_weight", o.mismatch_weight,
                     "0 or more");
+  requireMaskOption(isNotNegative(o.named_mismatch_weight), "evidence.named_mismatch_weight",
+                    o.named_mismatch_weight, "0 or more");
   requireMaskOption(isShare(o.same_weight_young), "evidence.same_weight_young", o.same_weight_young,
                     "0..1");
   requireMaskOption(isPositive(o.same_age), "evidence.same_age", o.same_age, "above 0 (s)");
