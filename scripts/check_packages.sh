@@ -31,12 +31,19 @@ cp "$build"/packages/*.deb "$root/packages"
 cp -r tests/consumers "$root/consumers"
 cp examples/python/labels_on_two_images.py "$root"
 
+# The caller's environment (compiler launchers, flags, PYTHONPATH) is not the empty system's; a proxy and the
+# processor are.
+environment=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive)
+for name in http_proxy https_proxy no_proxy OPENBLAS_CORETYPE OPENBLAS_L2_SIZE; do
+  [[ -z ${!name:-} ]] || environment+=("$name=${!name}")
+done
 # shellcheck disable=SC2016 # the inner shell's variables
-chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euxc '
+chroot "$root" env -i "${environment[@]}" sh -euxc '
   install() { apt-get -q -y install --no-install-recommends "$@" >/tmp/apt.log || { cat /tmp/apt.log; exit 1; }; }
   apt-get -q update >/dev/null
   # An earlier run may have ended before its end.
   apt-get -q -y purge --autoremove $(dpkg-query -W -f "\${Package} " "*hmcdyn*" 2>/dev/null || true) >/dev/null
+  rm -rf /tmp/*
   install g++ cmake make pkg-config
 
   install /packages/libhmcdyn-core-dev_*.deb
@@ -64,7 +71,8 @@ chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euxc '
   if ls /packages/python3-hmcdyn_*.deb; then
     install /packages/python3-hmcdyn_*.deb
     version=$(dpkg-query -W -f "\${Version}" python3-hmcdyn)
-    test "$(python3 -c "import hmcdyn; print(hmcdyn.__version__)")" = "$version"
+    python3 -c "import hmcdyn; print(hmcdyn.__version__)" | tee /tmp/version
+    test "$(cat /tmp/version)" = "$version"
     install python3-matplotlib
     python3 /labels_on_two_images.py /pictures/labels.png
     # Points on what moves are red, on the wall green.
@@ -80,7 +88,7 @@ boxes = {}
 for line in open("/tmp/crowd/boxes.txt"):
     if not line.startswith("#"):
         time, name, *numbers = line.split()
-        boxes.setdefault(time, []).append([*map(float, numbers), name])
+        boxes.setdefault(time, []).append([*map(float, numbers), int(name)])
 hmcdyn.serve_detector(lambda image, time: boxes.get(f"{time:.6f}", []), timestamps=True)
 SCRIPT
     hmcdyn_slam --dataset /tmp/crowd --camera /tmp/crowd/calibration.yaml --detector command \
