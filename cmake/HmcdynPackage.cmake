@@ -54,6 +54,16 @@ set(CPACK_COMPONENT_PYTHON_DESCRIPTION "hmcdyn's Python module")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hmcdyn)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/packaging/debian/python/postinst"
+                                              "${PROJECT_SOURCE_DIR}/packaging/debian/python/prerm")
+if(TARGET hmcdyn_python)
+  string(REPLACE "." ";" version "${HMCDYN_PYTHON_VERSION}")
+  list(GET version 0 major)
+  list(GET version 1 minor)
+  math(EXPR next "${minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= ${major}.${minor}~), python3 (<< ${major}.${next}~), python3-numpy")
+endif()
 
 include(CPack)

@@ -2,6 +2,7 @@
 // People by a YOLOv5 network in Node, with onnxruntime-node (npm install --ignore-scripts onnxruntime-node).
 //   hmcdyn_slam --detector command --command 'node yolo_boxes.mjs yolov5n.onnx' ...
 import { readSync, writeSync } from 'node:fs';
+import { basename } from 'node:path';
 import ort from 'onnxruntime-node';
 
 const side = 640;
@@ -51,7 +52,7 @@ async function find(pixels, width, height) { // pixels: blue, green, red
   return boxes.reduce((kept, box) => kept.some((other) => overlap(box, other) > 0.45) ? kept : [...kept, box], []);
 }
 
-say({ hmcdyn_detector: 1, version: `YOLOv5 ${process.argv[2]}, onnxruntime-node ${ort.env.versions.node}` });
+say({ hmcdyn_detector: 1, version: `${basename(process.argv[2])}, onnxruntime-node ${ort.env.versions.node}` });
 for (let line; (line = readLine()) !== null;) {
   const { frame, width, height, bytes } = JSON.parse(line);
   const pixels = read(bytes);

@@ -4,6 +4,7 @@
 
     hmcdyn_slam --detector command --command 'python3 yolo_boxes.py yolov5n.onnx' ...
 """
+import os
 import sys
 
 import cv2
@@ -33,4 +34,4 @@ def find(image):
     return [[*boxes[i], scores[i]] for i in numpy.ravel(kept)]
 
 
-hmcdyn.serve_detector(find, version=f"YOLOv5 {sys.argv[1]}, OpenCV {cv2.__version__}")
+hmcdyn.serve_detector(find, version=f"{os.path.basename(sys.argv[1])}, OpenCV {cv2.__version__}")

@@ -39,3 +39,13 @@ def test_a_folder_is_tracked_and_masked(tmp_path, clip):
     masks = sorted((tmp_path / "masks").glob("*.png"))
     assert len(masks) > 40
     assert cv2.imread(str(masks[-1]), cv2.IMREAD_UNCHANGED).shape == (480, 640)
+
+
+def test_boxes_of_two_detectors_are_compared(tmp_path):
+    (tmp_path / "a.txt").write_text("# timestamp class x_min y_min x_max y_max score\n"
+                                    "1.5 0 0 0 10 10 0.9\n1.5 0 100 0 110 10 0.8\n2.5 0 0 0 10 10 0.9\n")
+    # The first box is taller by 0.5 px; the second is of another class, the third overlaps too little.
+    (tmp_path / "b.txt").write_text("1.5 0 0 0 10 10.5 0.7\n1.5 56 100 0 110 10 0.8\n2.5 0 6 0 16 10 0.9\n")
+    text = run("../detectors/compare_boxes.py", tmp_path / "a.txt", tmp_path / "b.txt")
+    assert text == ("boxes: 3 and 3, 1 of them pairs\n"
+                    "smallest overlap 0.9524, largest difference of a corner 0.5000 px\n")  # 100 / 105

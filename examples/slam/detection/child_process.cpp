@@ -205,9 +205,16 @@ std::string ChildProcess::endAsText() {
                        strsignal(WTERMSIG(status_)));
   }
   constexpr int kNoCommand = 127;
+  constexpr int kSignalled = 128;  // and the signal: the shell's answer for what it ran
   const int code = WEXITSTATUS(status_);
-  return fmt::format("it ended with exit code {}{}", code,
-                     code == kNoCommand ? " (there is no such command)" : "");
+  std::string meaning;
+  if (code == kNoCommand) {
+    meaning = " (there is no such command)";
+  } else if (code > kSignalled && code < kSignalled + NSIG) {
+    const int number = code - kSignalled;
+    meaning = fmt::format(" (as after signal {}, {})", number, strsignal(number));
+  }
+  return fmt::format("it ended with exit code {}{}", code, meaning);
 }
 
 bool ChildProcess::exchange(Span<const char>& to_write, Clock::time_point deadline,

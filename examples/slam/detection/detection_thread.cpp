@@ -80,8 +80,9 @@ std::optional<Detection> DetectionThread::tryTakeNewest() {
 
 Detection DetectionThread::account(Answer answer) {
   if (answer.detection.failed) {
+    counts_.last_failure = fmt::format("at frame {}: {}", answer.detection.frame, answer.error);
     if (++counts_.failed == 1) {
-      counts_.first_failure = fmt::format("at frame {}: {}", answer.detection.frame, answer.error);
+      counts_.first_failure = counts_.last_failure;
       report_(
           fmt::format("detector {}: failed at frame {}, which goes without its boxes: {}; further "
                       "failures are only counted",

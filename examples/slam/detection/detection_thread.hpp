@@ -41,6 +41,7 @@ struct DetectionCounts {
   std::size_t replaced = 0;   ///< Requests that a newer frame took the place of.
   std::size_t failed = 0;     ///< Frames at which the detector threw.
   std::string first_failure;  ///< What it threw first, and at which frame; empty = it never did.
+  std::string last_failure;   ///< Likewise the last; equal where there was one.
 };
 
 /// A detector on a thread of its own, asked by one other thread.

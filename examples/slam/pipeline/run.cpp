@@ -240,8 +240,11 @@ nlohmann::json finish(Run& run) {
     finishDenseMap(run);
   }
   std::vector<std::string> warnings = filterWarnings(run.counts, options);
-  if (const std::string reason = whyFewPoses(run.counts); !reason.empty()) {
-    warnings.push_back(reason);
+  for (const std::string& reason :
+       {whyFewPoses(run.counts), laterFailures(run.counts.detections)}) {
+    if (!reason.empty()) {
+      warnings.push_back(reason);
+    }
   }
   for (const std::string& warning : warnings) {
     warn(warning);

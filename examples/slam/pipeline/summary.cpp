@@ -80,9 +80,12 @@ void RunCounts::add(double timestamp, const TrackingResult& tracked) {
 
 namespace {
 
-/// Which rule left out a file's boxes, or that the detector found none.
+/// Which rule left out a file's boxes, or that the detector found none, or failed.
 std::string whyNoBox(const RunCounts& counts) {
   const BoxCounts& boxes = counts.box_file;
+  if (counts.detections.failed > 0 && counts.detections.detected == 0) {
+    return "the detector failed at every frame";
+  }
   if (boxes.in_file == 0 || boxes.kept > 0) {
     return "the detector found no box in any frame";
   }
@@ -119,6 +122,14 @@ std::string whyFewPoses(const RunCounts& counts) {
   return fmt::format(
       "{} of {} frames have a pose{}", counts.frames_tracked, frames,
       reasons.empty() ? std::string() : fmt::format(": {}", fmt::join(reasons, "; ")));
+}
+
+std::string laterFailures(const DetectionCounts& counts) {
+  if (counts.failed < 2 || counts.last_failure.empty()) {
+    return {};
+  }
+  return fmt::format("the detector failed at {} of {} frames, the last time {}", counts.failed,
+                     counts.requested, counts.last_failure);
 }
 
 std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptions& options) {
@@ -216,6 +227,9 @@ nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
     summary["warnings"].push_back(fmt::format("the detector failed at {} of {} frames, first {}",
                                               counts.detections.failed, counts.detections.requested,
                                               counts.detections.first_failure));
+  }
+  if (const std::string reason = laterFailures(counts.detections); !reason.empty()) {
+    summary["warnings"].push_back(reason);
   }
   summary["errors"] = toJson(counts.errors);
   if (!groundtruth.empty()) {

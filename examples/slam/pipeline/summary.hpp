@@ -65,6 +65,10 @@ std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptio
 /// otherwise.
 std::string whyFewPoses(const RunCounts& counts);
 
+/// Where a detector failed more than once, of which only the first time was told: how often, and
+/// the last time, which says whether it was given up. Empty otherwise.
+std::string laterFailures(const DetectionCounts& counts);
+
 /// What the run was made with, in words.
 struct RunNames {
   std::string source;

@@ -111,6 +111,12 @@ TEST(CommandDetector, OneThatIsKilledIsStartedAgain) {
   EXPECT_TRUE(detector->detect(image(), 2.0).empty());
 }
 
+TEST(CommandDetector, OneThatIsKilledUnderItsShellNamesTheSignalToo) {
+  const auto detector = makeCommandDetector(
+      running(std::string(kHello) + "read -r header; sh -c 'kill -9 $$'; exit $?"));
+  EXPECT_TRUE(mentions(failure(*detector), {"exit code 137", "signal 9, Killed"}));
+}
+
 TEST(CommandDetector, OneThatAlwaysDiesIsGivenUp) {
   DetectorOptions options = running(std::string(kHello) + "read -r header; exit 4");
   options.command.restarts = 2;

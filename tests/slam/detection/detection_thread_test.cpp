@@ -135,6 +135,8 @@ TEST_F(Detecting, ADetectorThatThrowsIsReportedOnceCountedAndGoesOn) {
   expectFound(thread.take(), 3);
   EXPECT_EQ(thread.counts().failed, 2u);
   EXPECT_EQ(thread.counts().detected, 2u);
+  EXPECT_EQ(thread.counts().first_failure, "at frame 1: layer 7 is sick");
+  EXPECT_EQ(thread.counts().last_failure, "at frame 2: layer 7 is sick");
   ASSERT_EQ(reports_.size(), 1u);
   EXPECT_NE(reports_[0].find("frame 1"), std::string::npos) << reports_[0];
   EXPECT_NE(reports_[0].find("layer 7 is sick"), std::string::npos) << reports_[0];

@@ -263,8 +263,21 @@ TEST_F(Fault, ADetectorThatThrowsInTheMiddleIsCountedAndTrackingGoesOn) {
   EXPECT_EQ(counts.at("detections").at("detected"), 10);
   EXPECT_EQ(counts.at("detections").at("failed"), 20);
   EXPECT_GE(counts.at("frames_with_boxes").get<int>(), 10);  // and those that are carried on
+  EXPECT_EQ(
+      summary.at("warnings").back(),
+      "the detector failed at 20 of 30 frames, the last time at frame 29: the network is gone");
   expectLost(summary, stampsOf(), 30, 0, 0);
   EXPECT_LT(worstError(summary), kExact);
+}
+
+TEST_F(Fault, ADetectorThatAlwaysThrowsIsNotSaidToHaveFoundNothing) {
+  ToySequence toy;
+  toy.frames = 3;
+  const nlohmann::json summary =
+      runSlam(optionsFor(toy), {}, std::make_unique<BreakingDetector>(0.0));
+  ASSERT_FALSE(summary.at("warnings").empty());
+  EXPECT_EQ(summary.at("warnings").front(),
+            "without a box, only the motion mask spoke: the detector failed at every frame");
 }
 
 TEST_F(Fault, InRealTimeADetectorThatThrowsIsNoEndEither) {
