@@ -3,6 +3,7 @@
 #include <exception>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
@@ -49,20 +50,21 @@ std::vector<std::string> originOf(const Arguments& arguments, const Calibration&
 void run(const Arguments& arguments) {
   const CalibrationOptions& options = arguments.options;
   const std::string text = cameraText(options.camera);
+  const std::optional<TrueError> truth =  // read before minutes of work
+      arguments.truth.empty() ? std::nullopt : std::optional(readTrueError(arguments.truth));
   const Calibration calibration = calibrateDepth(options);
   for (const std::string& note : calibration.notes) {
     fmt::print(stderr, "hmcdyn_calibrate_depth: {}\n", note);
   }
   fmt::print("{}", describe(calibration, options));
-  if (!arguments.truth.empty()) {
-    const TrueError truth = readTrueError(arguments.truth);
-    const Recovery got = recovery(truth, calibration.samples, calibration.fit, options.scale_known,
+  if (truth) {
+    const Recovery got = recovery(*truth, calibration.samples, calibration.fit, options.scale_known,
                                   calibration.image);
     fmt::print(
         "\nagainst {}: true error {:.3f} % RMS, {:.3f} % after the correction: {:.0f} % left\n"
         "true scale error {:.4f}; true shift {:.2f} px to the right, {:.2f} px down\n",
         arguments.truth.string(), 100.0 * got.before, 100.0 * got.after, 100.0 * got.left(),
-        truth.scale, truth.shift.x, truth.shift.y);
+        truth->scale, truth->shift.x, truth->shift.y);
   }
   hmcdyn::slam::DepthSettings settings = settingsOf(calibration);
   settings.sensor = arguments.sensor;
