@@ -10,8 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <hmcdyn/box_carrier.hpp>
-
+#include "slam/detection/box_selection.hpp"
 #include "slam/detection/coco_classes.hpp"
 #include "support/time_stamps.hpp"
 
