@@ -403,6 +403,24 @@ TEST_F(Calibration, DepthsThatNoCameraSeesAreSaidWithTheFactorThatFits) {
   EXPECT_TRUE(mentions(slam::whatIsOddAbout(around(13.4f), 1000.0),
                        {"large for a depth camera", "13.3 m", "5000", "2.65 m"}));
   EXPECT_EQ(slam::whatIsOddAbout(around(12.0f), 5000.0), "");
+  // A Kinect's disparities of 1/8 px, 580 px * 0.075 m apart, in whole millimetres: from 2 to 4 m,
+  // each eight times.
+  std::vector<float> steps;
+  for (int i = 0; i < 8 * 88; ++i) {
+    const int eighths = 87 + i / 8;
+    steps.push_back(
+        static_cast<float>(std::round(1000.0 * 580.0 * 0.075 * 8.0 / eighths) / 1000.0));
+  }
+  EXPECT_EQ(slam::whatIsOddAbout(steps, 1000.0), "");
+  std::vector<float> as_fives = steps;
+  std::vector<float> as_millimetres = steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    as_fives[i] = 0.2f * steps[i];
+    as_millimetres[i] = 5.0f * steps[i];
+  }
+  EXPECT_TRUE(mentions(slam::whatIsOddAbout(as_fives, 5000.0),
+                       {"five times those of structured light", "with 1000", "millimetres"}));
+  EXPECT_TRUE(mentions(slam::whatIsOddAbout(as_millimetres, 1000.0), {"with 5000"}));
   EXPECT_TRUE(mentions(slam::whatIsOddAbout(std::vector<float>(50, 13.107f), 5000.0),
                        {"13.1 m nearly everywhere", "depth images"}));
   for (const float metres : {0.8f, 2.0f, 5.0f, 8.0f}) {

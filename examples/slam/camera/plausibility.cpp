@@ -146,6 +146,38 @@ std::string length(double metres) {
                           : fmt::format("{:.2g} cm", 100.0 * metres);
 }
 
+/// The depth factor that the steps between the depths around their median tell, if they are those
+/// of structured light, which measures disparities of 1/8 px with a focal length of 580 px and a
+/// baseline of 7.5 cm: z^2 / 348 m. 0 where they are finer than a few units.
+double factorByStepsOfStructuredLight(const std::vector<float>& depths, double median,
+                                      double depth_factor) {
+  constexpr double kAround = 0.05;        // of the median
+  constexpr double kInverseStep = 348.0;  // 1 / m
+  constexpr double kLeastStep = 3.0;      // units; below, it is the file's resolution
+  std::vector<double> levels;
+  for (const float depth : depths) {
+    if (std::abs(depth - median) < kAround * median) {
+      levels.push_back(std::round(static_cast<double>(depth) * depth_factor));
+    }
+  }
+  const std::size_t around = levels.size();
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  constexpr std::size_t kFew = 6;    // levels
+  constexpr std::size_t kOften = 5;  // depths a level; else the gaps are those of the sample
+  if (levels.size() < kFew || around < kOften * levels.size()) {
+    return 0.0;
+  }
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    steps.push_back(levels[i] - levels[i - 1]);
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double value = median * depth_factor;
+  return *middle < kLeastStep ? 0.0 : value * value / (kInverseStep * *middle);
+}
+
 }  // namespace
 
 bool isBaseline(double baseline_fx, double fx) {
@@ -264,7 +296,17 @@ std::string whatIsOddAbout(std::vector<float> depths, double depth_factor) {
   } else if (!is_fine && median > kReach) {
     odd = fmt::format("depths are large for a depth camera (median {})", length(median));
   } else {
-    return {};
+    // Fives, between millimetres and TUM's factor, cannot be taken for a camera's other baseline.
+    const double by_steps = factorByStepsOfStructuredLight(depths, median, depth_factor);
+    constexpr double kNearly = 1.35;
+    const double times = by_steps > 0.0 ? depth_factor / by_steps : 1.0;
+    const bool is_five = (times > 5.0 / kNearly && times < 5.0 * kNearly) ||
+                         (times < kNearly / 5.0 && times > 1.0 / (5.0 * kNearly));
+    if (!is_five) {
+      return {};
+    }
+    odd = fmt::format("the steps between depths near {} are {} those of structured light",
+                      length(median), times > 1.0 ? "some five times" : "a fifth of");
   }
   for (const double factor : {1000.0, kTums}) {
     const double fitting = median * depth_factor / factor;

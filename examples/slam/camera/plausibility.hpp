@@ -33,7 +33,8 @@ CameraCalibration fittedTo(CameraCalibration calibration, cv::Size image, const 
 /// What is odd about the depths of some frames, with the depth factor that would fit: a median
 /// beyond 20 m or below 5 cm; nearer and smaller throughout than depth cameras see, as millimetres
 /// read with a factor of 5000 are; a median beyond 10 m, as TUM's depths read as millimetres have;
-/// the same depth nearly everywhere.
+/// the same depth nearly everywhere; steps of five times or a fifth of what a Kinect's disparities
+/// make.
 /// Empty where nothing is, or there is no depth.
 /// @param depths in metres, above 0, of whole images.
 std::string whatIsOddAbout(std::vector<float> depths, double depth_factor);
