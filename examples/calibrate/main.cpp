@@ -38,6 +38,17 @@ void writeText(const std::filesystem::path& file, const std::string& text) {
   }
 }
 
+/// Asked before minutes of work.
+void requireWritable(const std::filesystem::path& file) {
+  const bool existed = std::filesystem::exists(file);
+  if (!std::ofstream(file, std::ios::app)) {
+    throw std::runtime_error(file.string() + ": cannot be written");
+  }
+  if (!existed) {
+    std::filesystem::remove(file);
+  }
+}
+
 std::vector<std::string> originOf(const Arguments& arguments, const Calibration& calibration) {
   return {fmt::format("measured by hmcdyn_calibrate_depth on {} ({} depths in {} images)",
                       arguments.options.dataset.string(), calibration.samples.size(),
@@ -50,7 +61,8 @@ std::vector<std::string> originOf(const Arguments& arguments, const Calibration&
 void run(const Arguments& arguments) {
   const CalibrationOptions& options = arguments.options;
   const std::string text = cameraText(options.camera);
-  const std::optional<TrueError> truth =  // read before minutes of work
+  requireWritable(arguments.output);
+  const std::optional<TrueError> truth =
       arguments.truth.empty() ? std::nullopt : std::optional(readTrueError(arguments.truth));
   const Calibration calibration = calibrateDepth(options);
   for (const std::string& note : calibration.notes) {

@@ -93,6 +93,12 @@ std::string guessOfContent(const std::vector<TimedBox>& boxes, const BoxCounts& 
         counts.inverted > 0 ? ", perhaps centre and size as YOLO writes them" : "",
         image.area() > 0 ? fmt::format(", {} and {}", image.width, image.height) : "");
   }
+  const bool are_points = std::all_of(boxes.begin(), boxes.end(), [](const TimedBox& timed) {
+    return timed.box.x_min == timed.box.x_max || timed.box.y_min == timed.box.y_max;
+  });
+  if (are_points) {
+    return "they have no area; is one corner written twice?";
+  }
   const std::string order = guessOfOrder(boxes, image);
   if (!order.empty()) {
     return order;
