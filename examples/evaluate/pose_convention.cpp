@@ -87,7 +87,7 @@ std::string otherConvention(const Trajectory& groundtruth, const Trajectory& est
   if (truth.size() < kLeast) {
     return {};
   }
-  const std::string length = otherLength(reach(positions_of_truth), reach(positions_found));
+  std::string length = otherLength(reach(positions_of_truth), reach(positions_found));
   if (!length.empty()) {
     return length;
   }

@@ -174,6 +174,9 @@ TEST_F(Calibration, DistortionIsReadUnderEachOfItsNames) {
 TEST_F(Calibration, AnotherModelOfDistortionIsRefusedWhateverTheCameraIsCalled) {
   EXPECT_EQ(read(rosCamera("plumb_bob", "0.2, -0.7, -0.003, 0.0001, 0.9")).distortion[4], 0.9);
   EXPECT_EQ(read(rosCamera("rational_polynomial", "0, 0, 0, 0, 0, 0, 0, 0")).distortion[0], 0.0);
+  for (const char* model : {"\"\"", "Plumb Bob", "undistorted", "radial-tangential"}) {
+    EXPECT_EQ(read(rosCamera(model, "0, 0, 0, 0, 0")).pinhole.fx, 520.5) << model;
+  }
   for (const char* model : {"equidistant", "fisheye", "fov"}) {
     EXPECT_TRUE(mentions(refusal(rosCamera(model, "-0.01, 0.02, -0.02, 0.008")),
                          {"distortion_model is '", model, "rectify"}));

@@ -168,7 +168,8 @@ bool isOurModel(const std::string& name) {
                                        "pinholebrownconrady",
                                        "none",
                                        "radialtangential",
-                                       "rationalpolynomial"};
+                                       "rationalpolynomial",
+                                       "undistorted"};
   return std::find(known.begin(), known.end(), lower(letters)) != known.end();
 }
 
@@ -179,7 +180,7 @@ void requirePinhole(const SettingsFile& settings) {
                         "cam0.camera_model", "Camera0.model"});
   const std::string distortion = keyEndingIn(settings, {"distortion_model", "distortion_type"});
   for (const std::string& model : {camera, distortion}) {
-    if (!model.empty() && !isOurModel(settings.text(model))) {
+    if (!model.empty() && !settings.text(model).empty() && !isOurModel(settings.text(model))) {
       throw settings.failure(
           model, fmt::format("is '{}'; expected PinHole or Rectified, with k1, k2, p1, p2 and k3 "
                              "(radtan, plumb_bob): rectify the images for others",

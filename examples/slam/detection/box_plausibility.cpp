@@ -99,7 +99,7 @@ std::string guessOfContent(const std::vector<TimedBox>& boxes, const BoxCounts& 
   if (are_points) {
     return "they have no area; is one corner written twice?";
   }
-  const std::string order = guessOfOrder(boxes, image);
+  std::string order = guessOfOrder(boxes, image);
   if (!order.empty()) {
     return order;
   }
