@@ -14,8 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   options.frames.times = {1000.0, 1000.1, 1000.2};
   try {
     const std::filesystem::path file = folder.write("fuzzed.txt", std::string(bytes, bytes + size));
-    const hmcdyn::slam::BoxReview review =
-        hmcdyn::slam::reviewBoxes(hmcdyn::slam::readBoxFile(file), options, file);
+    const hmcdyn::slam::BoxReview review = hmcdyn::slam::reviewBoxFile(file, options);
     const hmcdyn::slam::BoxCounts& counts = review.counts;
     hmcdyn::fuzz::require(counts.kept == review.kept.size(), "what is kept is counted");
     hmcdyn::fuzz::require(counts.in_file == counts.kept + counts.shares + counts.inverted +

@@ -13,6 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     const hmcdyn::slam::CameraCalibration camera = hmcdyn::slam::readCalibrationFile(
         folder.write("fuzzed.txt", std::string(bytes, bytes + size)));
     hmcdyn::fuzz::require(hmcdyn::slam::whatIsImplausible(camera).empty(), "a camera is plausible");
+    for (const std::string& unusual : hmcdyn::slam::whatIsUnusual(camera)) {
+      hmcdyn::fuzz::require(!unusual.empty(), "what is unusual is said");
+    }
     hmcdyn::fuzz::require((camera.width > 0) == (camera.height > 0), "a size has two sides");
   } catch (const std::runtime_error& error) {  // as documented
     hmcdyn::fuzz::require(std::string(error.what()).find("fuzzed.txt") != std::string::npos,

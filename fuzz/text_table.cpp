@@ -32,7 +32,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
           written.push_back(field);
         }
       }
-      hmcdyn::support::guessOfFields(row, 8);
+      hmcdyn::support::guessOfPose(row);
+      double value = 0.0;
+      const std::string guess = hmcdyn::support::guessOfStamp(row.fields.front());
+      require(guess.empty() || !hmcdyn::support::parseNumber(row.fields.front(), value),
+              "a number is a time stamp");
     }
   } catch (const std::runtime_error& error) {  // as documented
     require(std::string(error.what()).find("fuzzed.txt") != std::string::npos,

@@ -3,6 +3,7 @@
 #include <exception>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
@@ -37,6 +38,17 @@ void writeText(const std::filesystem::path& file, const std::string& text) {
   }
 }
 
+/// Asked before minutes of work.
+void requireWritable(const std::filesystem::path& file) {
+  const bool existed = std::filesystem::exists(file);
+  if (!std::ofstream(file, std::ios::app)) {
+    throw std::runtime_error(file.string() + ": cannot be written");
+  }
+  if (!existed) {
+    std::filesystem::remove(file);
+  }
+}
+
 std::vector<std::string> originOf(const Arguments& arguments, const Calibration& calibration) {
   return {fmt::format("measured by hmcdyn_calibrate_depth on {} ({} depths in {} images)",
                       arguments.options.dataset.string(), calibration.samples.size(),
@@ -49,20 +61,22 @@ std::vector<std::string> originOf(const Arguments& arguments, const Calibration&
 void run(const Arguments& arguments) {
   const CalibrationOptions& options = arguments.options;
   const std::string text = cameraText(options.camera);
+  requireWritable(arguments.output);
+  const std::optional<TrueError> truth =
+      arguments.truth.empty() ? std::nullopt : std::optional(readTrueError(arguments.truth));
   const Calibration calibration = calibrateDepth(options);
   for (const std::string& note : calibration.notes) {
     fmt::print(stderr, "hmcdyn_calibrate_depth: {}\n", note);
   }
   fmt::print("{}", describe(calibration, options));
-  if (!arguments.truth.empty()) {
-    const TrueError truth = readTrueError(arguments.truth);
-    const Recovery got = recovery(truth, calibration.samples, calibration.fit, options.scale_known,
+  if (truth) {
+    const Recovery got = recovery(*truth, calibration.samples, calibration.fit, options.scale_known,
                                   calibration.image);
     fmt::print(
         "\nagainst {}: true error {:.3f} % RMS, {:.3f} % after the correction: {:.0f} % left\n"
         "true scale error {:.4f}; true shift {:.2f} px to the right, {:.2f} px down\n",
         arguments.truth.string(), 100.0 * got.before, 100.0 * got.after, 100.0 * got.left(),
-        truth.scale, truth.shift.x, truth.shift.y);
+        truth->scale, truth->shift.x, truth->shift.y);
   }
   hmcdyn::slam::DepthSettings settings = settingsOf(calibration);
   settings.sensor = arguments.sensor;

@@ -16,10 +16,13 @@ AteResult absoluteTrajectoryError(const Trajectory& groundtruth, const Trajector
   if (pairs.size() < 3) {
     throw std::runtime_error(fmt::format(
         "{} of {} poses lie within {} s of a ground-truth pose; at least 3 are needed (estimate "
-        "{:.3f} to {:.3f} s, ground truth {:.3f} to {:.3f} s, offset {} s)",
+        "{:.3f} to {:.3f} s, ground truth {:.3f} to {:.3f} s, offset {} s{})",
         pairs.size(), estimate.size(), options.association.tolerance, estimate.front().timestamp,
         estimate.back().timestamp, groundtruth.front().timestamp, groundtruth.back().timestamp,
-        options.association.offset));
+        options.association.offset,
+        pairs.empty() ? fmt::format("; if both began together, the offset is {:.3f} s",
+                                    groundtruth.front().timestamp - estimate.front().timestamp)
+                      : ""));
   }
 
   AteResult result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -70,8 +71,13 @@ void run(const Arguments& arguments) {
       throw std::runtime_error("'" + pair + "' is no SEQUENCE:KEYPOINTS pair");
     }
     const std::filesystem::path sequence = pair.substr(0, colon);
-    const LabelScore score = scoreLabels(
-        hmcdyn::evaluate::readLabelledPoints(pair.substr(colon + 1)), sequence, arguments.options);
+    const std::string file = pair.substr(colon + 1);
+    const std::vector<hmcdyn::evaluate::LabelledPoint> points =
+        hmcdyn::evaluate::readLabelledPoints(file);
+    if (points.empty()) {
+      throw std::runtime_error(file + ": holds no key point; expected some behind the header");
+    }
+    const LabelScore score = scoreLabels(points, sequence, arguments.options);
     const std::string name = sequence.filename().string();
     total = total + score;
     if (arguments.json) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "evaluate/pose_convention.hpp"
 #include "evaluate/truth_frame.hpp"
 #include "support/time_stamps.hpp"
 
@@ -99,6 +100,18 @@ void noteFewPairs(const Run& run, const Trajectory& estimate, const Note& note) 
   }
 }
 
+void noteConvention(const Arguments& arguments, const Trajectory& groundtruth,
+                    const Trajectory& estimate, const std::filesystem::path& file,
+                    const Note& note) {
+  AssociationOptions options;
+  options.tolerance = arguments.tolerance.value_or(options.tolerance);
+  options.offset = arguments.offset;
+  const std::string other = otherConvention(groundtruth, estimate, options);
+  if (!other.empty()) {
+    note(fmt::format("{} against {}: {}", file.string(), arguments.groundtruth.string(), other));
+  }
+}
+
 std::optional<Tracking> countTracked(const Arguments& arguments, const std::vector<double>& frames,
                                      const Trajectory& estimate) {
   if (arguments.frames) {
@@ -145,6 +158,7 @@ Evaluation evaluateRuns(const Arguments& arguments, const Note& note) {
       }
       run.tracking = countTracked(arguments, frames, estimate);
       noteFewPairs(run, estimate, note);
+      noteConvention(arguments, evaluation.groundtruth, estimate, source.file, note);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(source.file.string() + ": " + error.what());
     }

@@ -27,31 +27,20 @@ constexpr std::array<const char*, 8> kNames{"timestamp", "tx", "ty", "tz", "qx",
   throw support::errorAt(name, line, what);
 }
 
-/// Formats of others that a number of fields gives away.
-std::string guessOfFormat(const support::TextRow& row) {
-  switch (row.fields.size()) {
-    case 12:
-      return "; twelve numbers are a pose of KITTI's, which has no time stamp: convert the file";
-    case 17:
-      return "; seventeen are a state of EuRoC's (ns, position, then qw first): convert the file";
-    default:
-      return support::guessOfFields(row, kNames.size());
-  }
-}
-
 std::array<double, kNames.size()> parseValues(const support::TextRow& row,
                                               const std::string& name) {
   if (row.fields.size() != kNames.size()) {
     failAt(name, row.line,
            fmt::format("{} fields; expected 8: timestamp tx ty tz qx qy qz qw{}", row.fields.size(),
-                       guessOfFormat(row)));
+                       support::guessOfPose(row)));
   }
   std::array<double, kNames.size()> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!support::parseNumber(row.fields[i], values.at(i))) {
       failAt(name, row.line,
-             fmt::format("{} is '{}'; expected a number", kNames.at(i),
-                         support::printable(row.fields[i])));
+             fmt::format("{} is '{}'; expected a number{}", kNames.at(i),
+                         support::printable(row.fields[i]),
+                         i == 0 ? support::guessOfStamp(row.fields[i]) : ""));
     }
   }
   return values;

@@ -80,7 +80,7 @@ std::vector<slam::TimedBox> readBoxes(const std::filesystem::path& file,
   detector.score_threshold = 0.0f;
   detector.time_tolerance = kSameStamp;
   detector.frames = slam::framesOfBoxes(recording.calibration, recording.list);
-  slam::BoxReview review = slam::reviewBoxes(slam::readBoxFile(file), detector, file);
+  slam::BoxReview review = slam::reviewBoxFile(file, detector);
   reportAll(review.notes, report);
   return std::move(review.kept);
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -127,7 +128,12 @@ MaskScore scoreMasks(const std::filesystem::path& sequence, const std::filesyste
       truth = cv::Mat::zeros(mask.size(), CV_8UC1);
     }
     const bool scored = index++ >= options.skip_frames;
-    if (mask.empty() || mask.size() != truth.size()) {
+    if (!mask.empty() && mask.size() != truth.size()) {
+      throw std::runtime_error(fmt::format("{}: is {} x {} pixels; expected {} x {} as {}",
+                                           found->second.string(), mask.cols, mask.rows, truth.cols,
+                                           truth.rows, file.string()));
+    }
+    if (mask.empty()) {
       score.without_mask += scored ? 1 : 0;
       if (truth.empty()) {
         continue;
@@ -139,6 +145,13 @@ MaskScore scoreMasks(const std::filesystem::path& sequence, const std::filesyste
       scoreFrame(truth, mask, options, score);
     }
     clock.update(1e-3 * static_cast<double>(stamp), truth, mask, scored, score);
+  }
+  if (score.without_mask > 0 && score.without_mask >= score.frames) {
+    throw std::runtime_error(fmt::format(
+        "{}: none of its {} images has the time stamp of one of the {} in {}; are they another "
+        "recording's?",
+        folder.string(), masks.size(), truths.size(),
+        (sequence / (nothing_moves ? "rgb" : "mask")).string()));
   }
   return score;
 }

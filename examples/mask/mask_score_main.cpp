@@ -89,6 +89,11 @@ void run(const Arguments& arguments) {
     const std::filesystem::path sequence = pair.substr(0, colon);
     const MaskScore score =
         hmcdyn::masking::scoreMasks(sequence, pair.substr(colon + 1), arguments.options);
+    if (score.without_mask > 0) {
+      fmt::print(stderr,
+                 "hmcdyn_mask_score: {}: {} frames have no mask, and count as masks of nothing\n",
+                 pair.substr(colon + 1), score.without_mask);
+    }
     const std::string name =
         (sequence.has_filename() ? sequence : sequence.parent_path()).filename().string();
     if (arguments.json) {

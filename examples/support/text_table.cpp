@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -66,18 +68,40 @@ std::string fromUtf16(std::string_view bytes, bool big_endian) {
   return text;
 }
 
-/// Every second byte is 0, as ASCII in UTF-16 without its mark. @param zeros 0: the first of each
-/// two (big endian), 1: the second.
+/// Most second bytes are 0, and none of the others, as in UTF-16 without its mark, of ASCII but for
+/// a comment. @param zeros 0: the first of each two (big endian), 1: the second.
 bool isUtf16(std::string_view bytes, std::size_t zeros) {
   if (bytes.size() < 4 || bytes.size() % 2 != 0) {
     return false;
   }
+  std::size_t zero = 0;
   for (std::size_t i = 0; i < bytes.size(); i += 2) {
-    if (bytes[i + zeros] != '\0' || bytes[i + 1 - zeros] == '\0') {
+    if (bytes[i + 1 - zeros] == '\0') {
       return false;
     }
+    zero += bytes[i + zeros] == '\0' ? 1 : 0;
   }
-  return true;
+  return 4 * zero > bytes.size();  // more than half of the characters
+}
+
+/// What systems leave behind a text: zeros of a file that was not closed, DOS's end of file.
+std::string_view withoutEndMarks(std::string_view text) {
+  while (!text.empty() && (text.back() == '\0' || text.back() == '\x1A')) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+/// Line ends of the first Macintosh, also among others; not those that belong to a '\n'.
+std::string withLineFeeds(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char before = i > 0 ? text[i - 1] : ' ';
+    const char after = i + 1 < text.size() ? text[i + 1] : ' ';
+    if (text[i] == '\r' && before != '\n' && after != '\n' && after != '\r') {
+      text[i] = '\n';
+    }
+  }
+  return text;
 }
 
 std::string replaceAll(std::string_view text, std::string_view from, std::string_view to) {
@@ -99,13 +123,14 @@ std::string withPlainCharacters(std::string text) {
   if (plain) {
     return text;
   }
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kTwins{{
-      {"\xEF\xBB\xBF", ""},   // U+FEFF, the mark of the byte order, also where files were joined
-      {"\xC2\xA0", " "},      // U+00A0, no-break space
-      {"\xE2\x80\xAF", " "},  // U+202F, narrow no-break space
-      {"\xE2\x80\x89", " "},  // U+2009, thin space
-      {"\xE3\x80\x80", " "},  // U+3000, ideographic space
-      {"\xE2\x88\x92", "-"},  // U+2212, minus
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kTwins{{
+      {"\xEF\xBB\xBF", ""},    // U+FEFF, the mark of the byte order, also where files were joined
+      {"\xC2\xA0", " "},       // U+00A0, no-break space
+      {"\xE2\x80\xAF", " "},   // U+202F, narrow no-break space
+      {"\xE2\x80\x89", " "},   // U+2009, thin space
+      {"\xE3\x80\x80", " "},   // U+3000, ideographic space
+      {"\xE2\x88\x92", "-"},   // U+2212, minus
+      {"\xE2\x80\xA8", "\n"},  // U+2028, line separator
   }};
   for (const auto& [from, to] : kTwins) {
     text = replaceAll(text, from, to);
@@ -190,13 +215,19 @@ std::string readBytes(const std::filesystem::path& file) {
     throw std::runtime_error(fmt::format("{}: no such file", file.string()));
   }
   if (!std::filesystem::is_regular_file(status)) {
-    throw std::runtime_error(fmt::format("{}: is not a regular file", file.string()));
+    throw std::runtime_error(fmt::format("{}: {}", file.string(),
+                                         std::filesystem::is_directory(status)
+                                             ? "is a folder; expected a file"
+                                             : "is not a regular file"));
   }
   std::string bytes(std::filesystem::file_size(file), '\0');
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
   stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream) {
-    throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
+    throw std::runtime_error(
+        fmt::format("{}: cannot be read{}", file.string(),
+                    errno != 0 ? fmt::format(": {}", std::strerror(errno)) : std::string()));
   }
   return bytes;
 }
@@ -210,17 +241,15 @@ std::string toText(const std::string& bytes, const std::string& file) {
   } else if (isUtf16(bytes, 1) || isUtf16(bytes, 0)) {
     text = fromUtf16(bytes, isUtf16(bytes, 0));
   } else {
-    text = bytes;
+    text = std::string(withoutEndMarks(bytes));
   }
   if (text.find('\0') != std::string::npos) {
-    throw std::runtime_error(
-        fmt::format("{}: holds bytes of value 0; expected text, not a binary file", file));
+    throw std::runtime_error(fmt::format(
+        "{}: holds bytes of value 0; expected text, not a binary file (UTF-32? Save it as "
+        "UTF-8)",
+        file));
   }
-  text = withPlainCharacters(std::move(text));
-  if (text.find('\n') == std::string::npos) {  // line ends of the first Macintosh
-    std::replace(text.begin(), text.end(), '\r', '\n');
-  }
-  return text;
+  return withLineFeeds(withPlainCharacters(std::move(text)));
 }
 
 TextTable parseTable(std::string_view text, const std::string& file,
@@ -278,6 +307,34 @@ std::string guessOfFields(const TextRow& row, std::size_t expected) {
         printable(row.fields[0]), printable(row.fields[1]));
   }
   return {};
+}
+
+std::string guessOfPose(const TextRow& row) {
+  constexpr std::size_t kFields = 8;
+  const std::size_t count = row.fields.size();
+  const bool is_matrix = count == 16 && std::equal(row.fields.begin() + 12, row.fields.begin() + 14,
+                                                   row.fields.begin() + 13);
+  double last = 0.0;
+  if (is_matrix && parseNumber(row.fields.back(), last) && last == 1.0) {
+    return "; sixteen numbers are a matrix of 4 x 4, which has no time stamp: convert the file";
+  }
+  switch (count) {
+    case 4:
+      return "; four numbers are a time and a position without its rotation, or a matrix's row";
+    case 7:
+      return "; of seven numbers, is the time stamp missing, or is the rotation in angles?";
+    case 9:
+      return "; of nine numbers, is one a frame number? Leave it out";
+    case 12:
+      return "; twelve numbers are a pose of KITTI's, which has no time stamp: convert the file";
+    case 13:
+      return "; thirteen numbers are a frame number or time stamp and a pose as KITTI's: convert "
+             "the file";
+    case 17:
+      return "; seventeen are a state of EuRoC's (ns, position, then qw first): convert the file";
+    default:
+      return guessOfFields(row, kFields);
+  }
 }
 
 bool parseNumber(std::string_view field, double& value) {

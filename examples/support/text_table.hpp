@@ -54,6 +54,9 @@ TextTable readTable(const std::filesystem::path& file,
 /// commas? ...", or nothing. @param expected number of fields.
 std::string guessOfFields(const TextRow& row, std::size_t expected);
 
+/// The same for a row in the place of "timestamp tx ty tz qx qy qz qw": other formats of poses.
+std::string guessOfPose(const TextRow& row);
+
 /// True where the whole of a field is a number, NaN and infinity included; '+' may stand before it.
 bool parseNumber(std::string_view field, double& value);
 

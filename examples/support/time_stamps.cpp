@@ -89,6 +89,16 @@ std::optional<TimeUnit> unitByStep(double step) {
   return std::nullopt;
 }
 
+/// Windows' and .NET's: in nanoseconds they would be of 1973 and 1990, and the frames ten times as
+/// fast.
+bool areTicks(const std::vector<double>& stamps, double step) {
+  constexpr double kTick = 1e-7;  // s
+  const double ticks = median(stamps);
+  const bool since_1601 = ticks > 1.2e17 && ticks < 1.5e17;  // 1981 to 2076
+  const bool since_1 = ticks > 6.2e17 && ticks < 6.7e17;     // 1965 to 2124
+  return (since_1601 || since_1) && step * kTick >= kShortestStep && step * kTick <= kLongestStep;
+}
+
 std::vector<double> numbersOf(const std::vector<std::string>& fields) {
   std::vector<double> numbers(fields.size(), 0.0);
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -186,6 +196,12 @@ StampReview reviewStamps(const std::vector<double>& stamps) {
     return review;
   }
   const std::vector<double> steps = stepsOf(sorted(stamps));
+  if (!steps.empty() && areTicks(stamps, median(steps))) {
+    review.doubt =
+        "look like ticks of 100 ns since 1601 or the year 1, as Windows and .NET count; write them "
+        "in seconds";
+    return review;
+  }
   // The microseconds of a machine that is up for an hour would be seconds of 1998, but for the
   // steps.
   constexpr double kSlowest = 60.0;  // s; a picture a minute
@@ -301,6 +317,35 @@ std::optional<double> secondsByOverlap(const std::vector<double>& stamps, double
     }
   }
   return best;
+}
+
+std::string guessOfStamp(const std::string& field) {
+  double ignored = 0.0;
+  if (parseNumber(field, ignored)) {
+    return {};
+  }
+  const auto has = [&field](const char* part) { return field.find(part) != std::string::npos; };
+  const std::size_t digits = std::min(field.find_first_not_of("0123456789"), field.size());
+  constexpr std::size_t kYear = 4;
+  if ((digits == kYear && (field[digits] == '-' || field[digits] == '/')) ||
+      (digits > 0 && digits < field.size() && field[digits] == ':')) {
+    return "; is this a date or a time of day? Write seconds";
+  }
+  if (has("/") || has("\\") || has(".png") || has(".jpg")) {
+    return "; is this a file's name? The time stamp comes first";
+  }
+  return {};
+}
+
+double parseStamp(const std::string& field, const std::string& what, const std::string& file,
+                  std::size_t line) {
+  const std::string guess = guessOfStamp(field);
+  if (!guess.empty()) {
+    throw errorAt(
+        file, line,
+        fmt::format("{} is '{}'; expected a finite number{}", what, printable(field), guess));
+  }
+  return parseFinite(field, what, file, line);
 }
 
 }  // namespace hmcdyn::support

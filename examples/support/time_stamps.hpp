@@ -2,6 +2,7 @@
 // What clock time stamps are of: the one place that says what is plausible.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -36,7 +37,8 @@ struct StampReview {
 /// Finds the unit of time stamps: by their size where they count from 1970 (1989 to 2103 is
 /// plausible), else by the median step between frames: a camera gives 1 to 250 frames a second, and
 /// more than 2000 or fewer than one in four seconds are doubted. Whole numbers that step by less
-/// than 4 may be anything, if they are more than 4. Two stamps or fewer are seconds unless they
+/// than 4 may be anything, if they are more than 4. Ticks of 100 ns since 1601 or the year 1 are
+/// doubted, too. Two stamps or fewer are seconds unless they
 /// count from 1970 otherwise.
 /// @param stamps finite, in the order of the file.
 StampReview reviewStamps(const std::vector<double>& stamps);
@@ -65,5 +67,14 @@ std::optional<double> secondsByOverlap(const std::vector<double>& stamps, double
 
 /// The unit of a time since 1970, nothing where a stamp is none in any unit.
 std::optional<TimeUnit> unitSince1970(double stamp);
+
+/// What a field in the place of a time stamp is that is no number: a file's name, a date; to end a
+/// message with, or nothing.
+std::string guessOfStamp(const std::string& field);
+
+/// The number in a field. @param what names it.
+/// @throws std::runtime_error as parseFinite() does, with guessOfStamp().
+double parseStamp(const std::string& field, const std::string& what, const std::string& file,
+                  std::size_t line);
 
 }  // namespace hmcdyn::support

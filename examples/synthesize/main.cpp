@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
-#include <spdlog/spdlog.h>
 
 #include "support/command_line.hpp"
 #include "support/progress_bar.hpp"
@@ -116,8 +116,11 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "hmcdyn_synthesize: %s\n", error.what());
+    return hmcdyn::support::kBadUsage;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    std::fprintf(stderr, "hmcdyn_synthesize: %s\n", error.what());
     return 1;
   }
 }

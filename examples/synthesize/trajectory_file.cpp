@@ -82,7 +82,7 @@ StampedPose parsePose(const support::TextRow& row, const std::filesystem::path& 
   constexpr std::size_t kValues = 8;
   if (row.fields.size() != kValues) {
     fail(std::to_string(row.fields.size()) + " values, expected timestamp tx ty tz qx qy qz qw" +
-         support::guessOfFields(row, kValues));
+         support::guessOfPose(row));
   }
   std::vector<double> values;
   for (const std::string& word : row.fields) {

@@ -10,7 +10,8 @@ import hmcdyn
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
-HEADERS = sorted((ROOT / "include/hmcdyn").glob("*.hpp"))
+INCLUDE = ROOT / "include/hmcdyn"
+HEADERS = sorted([*INCLUDE.glob("*.hpp"), *INCLUDE.glob("[!d]*/*.hpp")])  # detail/ is nobody's
 EVALUATION = [ROOT / "examples/evaluate" / f"{name}.hpp"
               for name in ("absolute_trajectory_error", "alignment", "relative_pose_error", "statistics")]
 

@@ -17,9 +17,12 @@ namespace {
 /// Boxes are followed on images of half the size: their flow needs no more.
 constexpr float kFlowScale = 0.5f;
 
-constexpr double kMaxCarry = 2.0;        ///< (s) Without a newer detection a box ends.
-constexpr float kMinFollowed = 0.4f;     ///< Fewer of the thing's points followed, and it ends.
-constexpr float kMaxScatter = 5.0f;      ///< Median deviation of the points from its motion (px).
+constexpr double kMaxCarry = 2.0;     ///< (s) Without a newer detection a box ends.
+constexpr float kMinFollowed = 0.4f;  ///< Fewer of the thing's points followed, and it ends.
+/// Median deviation of the points from the box's motion, as a share of its diagonal: limbs swing by
+/// as much as their owner is large in the image. At least so many pixels.
+constexpr float kMaxScatter = 0.02f;
+constexpr float kLeastScatter = 5.0f;
 constexpr float kDepthBand = 0.5f;       ///< The thing's points lie within its depth +- this (m).
 constexpr float kDepthGap = 0.25f;       ///< Depths farther apart are of different layers (m).
 constexpr float kMinLayerShare = 0.2f;   ///< A layer with fewer of a box's points is not the thing.
@@ -147,9 +150,9 @@ struct BoxMotion {
 };
 
 /// Medians of the points' shifts and of the ratios of their distances; nothing where the points do
-/// not move as one.
-std::optional<BoxMotion> medianMotion(const KeyPoints& from, const FlowMatches& to,
-                                      const BoxCarrierOptions& options) {
+/// not move as one. @param box that they are in.
+std::optional<BoxMotion> medianMotion(const DetectionBox& box, const KeyPoints& from,
+                                      const FlowMatches& to, const BoxCarrierOptions& options) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (std::isfinite(to.u[i])) {
@@ -178,7 +181,8 @@ std::optional<BoxMotion> medianMotion(const KeyPoints& from, const FlowMatches& 
   for (std::size_t k = 0; k < du.size(); ++k) {
     deviation.push_back(std::hypot(du[k] - motion.du, dv[k] - motion.dv));
   }
-  if (medianOf(deviation) > kMaxScatter) {
+  const float diagonal = std::hypot(box.x_max - box.x_min, box.y_max - box.y_min);
+  if (medianOf(deviation) > std::max(kLeastScatter, kMaxScatter * diagonal)) {
     return std::nullopt;
   }
   motion.scale = std::clamp(motion.scale, 0.9f, 1.1f);  // a person's size changes slowly
@@ -294,7 +298,7 @@ bool BoxCarrier::carry(Track& track, const Moment& from, const Moment& to) const
   }
   const FlowMatches matches =
       trackIntoEarlierFrame(from.pyramid, to.pyramid, points.view(), options_.flow);
-  const std::optional<BoxMotion> motion = medianMotion(points, matches, options_);
+  const std::optional<BoxMotion> motion = medianMotion(track.box, points, matches, options_);
   if (!motion) {
     return false;
   }

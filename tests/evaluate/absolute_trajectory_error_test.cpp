@@ -94,10 +94,12 @@ TEST(AbsoluteTrajectoryError, AddsTheOffsetToTheEstimate) {
 }
 
 TEST(AbsoluteTrajectoryError, SaysWhyTooFewPosesAreAssociated) {
-  EXPECT_EQ(test::messageOf<std::runtime_error>(
-                [] { absoluteTrajectoryError(square(), test::delayed(100.0, square())); }),
-            "0 of 4 poses lie within 0.02 s of a ground-truth pose; at least 3 are needed "
-            "(estimate 100.000 to 103.000 s, ground truth 0.000 to 3.000 s, offset 0 s)");
+  EXPECT_EQ(
+      test::messageOf<std::runtime_error>(
+          [] { absoluteTrajectoryError(square(), test::delayed(100.0, square())); }),
+      "0 of 4 poses lie within 0.02 s of a ground-truth pose; at least 3 are needed "
+      "(estimate 100.000 to 103.000 s, ground truth 0.000 to 3.000 s, offset 0 s; if both began "
+      "together, the offset is -100.000 s)");
 }
 
 TEST(AbsoluteTrajectoryError, RefusesEmptyAndUnsortedTrajectories) {

@@ -71,10 +71,14 @@ TEST(ReadTrajectory, OfDoubledStampsTakesTheLast) {
 
 TEST(ReadTrajectory, NamesFileAndLineOfAMalformedPose) {
   const std::string good = "# comment\n1 0 0 0 0 0 0 1\n";
-  EXPECT_EQ(parseError(good + "2 0 0 0 0 0 0\n"),
-            "poses.txt:3: 7 fields; expected 8: timestamp tx ty tz qx qy qz qw");
-  EXPECT_EQ(parseError(good + "2 0 0 0 0 0 0 1 5\n"),
-            "poses.txt:3: 9 fields; expected 8: timestamp tx ty tz qx qy qz qw");
+  EXPECT_EQ(
+      parseError(good + "2 0 0 0 0 0 0\n"),
+      "poses.txt:3: 7 fields; expected 8: timestamp tx ty tz qx qy qz qw; of seven numbers, is "
+      "the time stamp missing, or is the rotation in angles?");
+  EXPECT_EQ(
+      parseError(good + "2 0 0 0 0 0 0 1 5\n"),
+      "poses.txt:3: 9 fields; expected 8: timestamp tx ty tz qx qy qz qw; of nine numbers, is "
+      "one a frame number? Leave it out");
   EXPECT_EQ(parseError(good + "\n2 0 zero 0 0 0 0 1\n"),
             "poses.txt:4: ty is 'zero'; expected a number");
   EXPECT_EQ(parseError(good + "2 0 0 1.5m 0 0 0 1\n"),

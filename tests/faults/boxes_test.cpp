@@ -8,6 +8,7 @@
 
 #include "fault_input.hpp"
 #include "slam/detection/box_plausibility.hpp"
+#include "slam/detection/coco_classes.hpp"
 #include "slam/detection/file_detector.hpp"
 
 namespace hmcdyn::faults {
@@ -30,7 +31,7 @@ class Boxes : public testing::Test {
 
   BoxReview review(const std::string& text) const {
     const std::filesystem::path file = folder_.write("boxes.txt", text);
-    return slam::reviewBoxes(slam::readBoxFile(file), options_, file);
+    return slam::reviewBoxFile(file, options_);
   }
   std::string refusal(const std::string& text) const {
     return messageOf<std::runtime_error>([&] { review(text); });
@@ -56,13 +57,25 @@ TEST_F(Boxes, AFileOfOtherBoxesIsRefusedWithAGuess) {
       {"centre and size, too large for a corner",
        "1000.0 person 500 300 180 320 0.9\n1000.1 person 540 320 160 300 0.9\n",
        {"centre and size"}},
+      {"x_min x_max y_min y_max",
+       "1000.0 person 300 400 90 430 0.9\n1000.1 person 310 410 95 440 0.9\n",
+       {"x_min x_max y_min y_max"}},
+      {"of which some are not inverted",
+       "1000.0 person 50 150 90 430 1\n1000.1 person 310 410 95 440 1\n1000.1 person 320 410 95 "
+       "440 1\n",
+       {"2 of 3 lines", "x_min x_max y_min y_max"}},
       {"corners in another order",
        "1000.0 person 600 470 300 200 0.9\n1000.1 person 610 460 310 210 0.9\n",
        {"x_max y_max x_min y_min"}},
       {"shares", "1000.0 person 0.3 0.2 0.5 0.9 0.9\n", {"shares of the image", "640 and 480"}},
       {"YOLO's shares", "1000.0 0 0.6 0.5 0.2 0.4 0.9\n", {"shares", "centre and size"}},
       {"another image", "1000.0 person 1200 700 1500 900 0.9\n", {"another size than 640 x 480"}},
-      {"another clock", "12.0 person 10 20 90 200 0.9\n", {"no box is at a frame's time", "12.0"}},
+      {"another clock",
+       "12.0 person 10 20 90 200 0.9\n",
+       {"no box is at a frame's time", "12.0", "differ by 988.000000 s"}},
+      {"without area",
+       "1000.0 person 10 20 10 200 0.9\n",
+       {"1 with a maximum not above", "no area"}},
       {"between the frames",
        "1001.9 person 10 20 90 200 0.9\n1002.5 person 10 20 90 200 0.9\n",
        {}},
@@ -130,6 +143,67 @@ TEST_F(Boxes, FrameNumbersAndBoxesOfALargerImageAreNamed) {
   EXPECT_TRUE(oneMentions(review(larger).notes, {"30 of 30 boxes", "640 x 480", "another size"}));
 }
 
+TEST_F(Boxes, ASizeThatStaysWhileTheCornerMovesMayBeASize) {
+  std::string sizes;
+  std::string corners;
+  for (int k = 0; k < 20; ++k) {
+    const double time = 1000.0 + k / 30.0;
+    sizes += fmt::format("{:.6f} person {} 90 140 340 0.9\n", time, 10 + 6 * k);
+    corners += fmt::format("{:.6f} person {} 90 {} 340 0.9\n", time, 10 + 6 * k, 150 + 6 * k);
+  }
+  EXPECT_TRUE(oneMentions(review(sizes).notes, {"x y width height", "are they sizes"}));
+  EXPECT_TRUE(review(corners).notes.empty());
+}
+
+TEST_F(Boxes, ThoseOfAnImageOfHalfTheSizeAreNamed) {
+  std::string half;
+  std::string aside;
+  for (int k = 0; k < 25; ++k) {
+    const double time = 1000.0 + k / 30.0;
+    half += fmt::format("{:.6f} person {} 40 {} 225 0.9\n", time, 10 + 9 * k, 80 + 9 * k);
+    aside += fmt::format("{:.6f} person {} 40 {} 225 0.9\n", time, 10 + 2 * k, 80 + 2 * k);
+  }
+  EXPECT_TRUE(oneMentions(review(half).notes, {"upper left quarter", "half the size"}));
+  EXPECT_TRUE(review(aside).notes.empty());
+}
+
+TEST_F(Boxes, SeveralAroundOnePersonAtOneTimeAreNamed) {
+  std::string rounded;
+  std::string crowd;
+  for (int k = 0; k < 20; ++k) {
+    rounded += fmt::format("{} person {} 90 {} 430 0.9\n", 1000 + k / 10, 50 + k, 190 + k);
+    crowd += fmt::format("1000.5 person {} 90 {} 430 0.9\n", 10 + 30 * k, 60 + 30 * k);
+  }
+  EXPECT_TRUE(oneMentions(review(rounded).notes, {"18 of 20 boxes", "rounded", "NMS"}));
+  EXPECT_TRUE(review(crowd).notes.empty());
+}
+
+TEST_F(Boxes, OneTimeStampForAllOfAnotherClockIsNamed) {
+  std::string text;
+  for (int k = 0; k < 9; ++k) {
+    text += fmt::format("1024 person {} 90 {} 430 0.9\n", 50 + 60 * k, 100 + 60 * k);
+  }
+  EXPECT_TRUE(mentions(refusal(text), {"no box is at a frame's time", "are the same", "32 bits"}));
+}
+
+TEST_F(Boxes, WhatIsAssumedOfTheTextIsNoted) {
+  EXPECT_TRUE(
+      oneMentions(review("time class x1 y1 x2 y2 score\n1000,0 person 10 20 90 200 0,9\n").notes,
+                  {"boxes.txt:1:", "names"}));
+  EXPECT_TRUE(oneMentions(review("1000,0 person 10 20 90 200 0,9\n").notes, {"decimal commas"}));
+}
+
+TEST_F(Boxes, NamesOfClassesAreReadInAnySpelling) {
+  for (const char* name : {"person", "Person", "PERSON", "\"person\"", "'Person'", "person:"}) {
+    EXPECT_EQ(review(fmt::format("1000.0 {} 10 20 90 200 0.9\n", name)).kept.size(), 1U) << name;
+  }
+  EXPECT_EQ(slam::findCocoClass("Traffic-Light"), 9);
+  EXPECT_EQ(slam::findCocoClass("\"TV\""), 62);
+  for (const char* other : {"people", "pedestrian", "", "\"\"", ":"}) {
+    EXPECT_FALSE(slam::findCocoClass(other).has_value()) << other;
+  }
+}
+
 TEST_F(Boxes, PeopleThatLieInEveryFrameMayBeCornersWithYFirst) {
   const auto inFrames = [](const char* corners) {
     std::string text;
@@ -163,8 +237,13 @@ TEST_F(Boxes, ALineOfAnotherFormatIsNamedWithAGuess) {
            {"0 0.5 0.5 0.2 0.4\n", {"boxes.txt:1: 5 fields", "YOLO"}},
            {"1000.0 person 10 20 90 200\n", {"boxes.txt:1: 6 fields", "score missing"}},
            {"1,-1,794,247,71,174,1,-1,-1,-1\n", {"boxes.txt:1:", "MOT"}},
+           {"1000.0 10 20 90 200 0.9 person\n", {"boxes.txt:1:", "'person', is behind the score"}},
+           {"0 0.5 0.5 0.2 0.4 0.9\n", {"boxes.txt:1: 6 fields", "YOLO"}},
+           {"1,1,794,247,71,174,1,1,1.0\n", {"boxes.txt:1:", "MOT"}},
+           {"2012-07-09T15:07:14 person 1 2 3 4 1\n", {"boxes.txt:1: timestamp is", "date"}},
            {"1000.0 person 10 20 90 200 95\n", {"boxes.txt:1: score is 95", "per cent"}},
-           {"rgb/1.png person 10 20 90 200 1\n", {"boxes.txt:1: timestamp is 'rgb/1.png'"}}}) {
+           {"rgb/1.png person 10 20 90 200 1\n",
+            {"boxes.txt:1: timestamp is 'rgb/1.png'", "file's name"}}}) {
     const std::string message = refusal(kind.text);
     for (const std::string& part : kind.said) {
       EXPECT_TRUE(mentions(message, {part}));

@@ -122,6 +122,94 @@ TEST_F(Calibration, CameraMatricesAreReadToo) {
   EXPECT_EQ(kalibr.distortion[3], 0.0001);
 }
 
+/// As ROS writes a camera, with a distortion of the given model.
+std::string rosCamera(const std::string& model, const std::string& coefficients) {
+  return "image_width: 640\nimage_height: 480\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+         "  data: [520.5, 0.0, 325.1, 0.0, 521.0, 249.7, 0.0, 0.0, 1.0]\n"
+         "distortion_model: " +
+         model + "\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [" + coefficients +
+         "]\ndepth_factor: 1000\n";
+}
+
+TEST_F(Calibration, DistortionIsReadUnderEachOfItsNames) {
+  const std::string matrix = "[520.5, 0.0, 325.1, 0.0, 521.0, 249.7, 0.0, 0.0, 1.0]\n";
+  const std::string list = "[0.2, -0.7, -0.003, 0.0001]\n";
+  const std::string size = "height: 480\nwidth: 640\ndepth_factor: 1000\n";
+  const std::string group =
+      "  k1: 0.2\n  k2: -0.7\n  p1: -0.003\n  p2: 0.0001\n"
+      "projection_parameters:\n  fx: 520.5\n  fy: 521\n  cx: 325.1\n  cy: 249.7\n";
+  struct Kind {
+    const char* what;
+    std::string text;
+  };
+  for (const Kind& kind : std::vector<Kind>{
+           {"ROS 1's topic", size + "distortion_model: plumb_bob\nD: " + list + "K: " + matrix},
+           {"ROS 2's topic", size + "distortion_model: plumb_bob\nd: " + list + "k: " + matrix},
+           {"EuRoC's",
+            "resolution: [640, 480]\ncamera_model: pinhole\n"
+            "intrinsics: [520.5, 521, 325.1, 249.7]\n"
+            "distortion_model: radial-tangential\ndepth_factor: 1000\n"
+            "distortion_coefficients: " +
+                list},
+           {"VINS-Mono's",
+            "model_type: PINHOLE\nimage_width: 640\nimage_height: 480\n"
+            "depth_factor: 1000\ndistortion_parameters:\n" +
+                group},
+           {"nested beside fx",
+            "cam:\n  fx: 520.5\n  fy: 521\n  cx: 325.1\n  cy: 249.7\n  distortion: " + list +
+                "depth_scale: 1000\n"}}) {
+    SCOPED_TRACE(kind.what);
+    const CameraCalibration camera = read(kind.text);
+    EXPECT_EQ(camera.pinhole.fx, 520.5);
+    EXPECT_EQ(camera.distortion, (std::array<double, 5>{0.2, -0.7, -0.003, 0.0001, 0.0}));
+  }
+  // The second camera's is not ours.
+  const std::string stock = kStock;
+  EXPECT_EQ(read(replaced(replaced(stock, "Camera.k", "#"), "Camera.p", "#") +
+                 "RIGHT.D:\n  rows: 1\n  data: " + list)
+                .distortion,
+            (std::array<double, 5>{}));
+}
+
+TEST_F(Calibration, AnotherModelOfDistortionIsRefusedWhateverTheCameraIsCalled) {
+  EXPECT_EQ(read(rosCamera("plumb_bob", "0.2, -0.7, -0.003, 0.0001, 0.9")).distortion[4], 0.9);
+  EXPECT_EQ(read(rosCamera("rational_polynomial", "0, 0, 0, 0, 0, 0, 0, 0")).distortion[0], 0.0);
+  for (const char* model : {"\"\"", "Plumb Bob", "undistorted", "radial-tangential"}) {
+    EXPECT_EQ(read(rosCamera(model, "0, 0, 0, 0, 0")).pinhole.fx, 520.5) << model;
+  }
+  for (const char* model : {"equidistant", "fisheye", "fov"}) {
+    EXPECT_TRUE(mentions(refusal(rosCamera(model, "-0.01, 0.02, -0.02, 0.008")),
+                         {"distortion_model is '", model, "rectify"}));
+  }
+  EXPECT_TRUE(mentions(
+      refusal(rosCamera("rational_polynomial", "0.5, -2.6, 0.001, 0.0002, 1.5, 0.4, -2.4, 1.4")),
+      {"settings.yaml:", "rational"}));
+}
+
+TEST_F(Calibration, FilesWithoutKeysAreNamedForWhatTheyAre) {
+  EXPECT_TRUE(mentions(refusal("# Camera list\n1 PINHOLE 640 480 535.4 539.2 320.1 247.6\n"),
+                       {"no settings", "COLMAP"}));
+  EXPECT_TRUE(mentions(refusal("535.4 0 320.1\n0 539.2 247.6\n0 0 1\n"), {"numbers alone", "fx:"}));
+  EXPECT_TRUE(mentions(refusal("[camera]\nfx = 535.4\nfy = 539.2\n"), {"equals signs", "INI"}));
+}
+
+TEST_F(Calibration, WhatCamerasSeldomHaveIsSaidButNotRefused) {
+  CameraCalibration camera = slam::loadCamera("tum3");
+  EXPECT_TRUE(slam::whatIsUnusual(camera).empty());
+  camera.pinhole = {535.4, 539.2, 247.6, 320.1};
+  EXPECT_EQ(slam::whatIsImplausible(camera), "");
+  EXPECT_TRUE(oneMentions(slam::whatIsUnusual(camera), {"(247.6, 320.1)", "swapped"}));
+  camera.pinhole = {365.5, 365.5, 254.9, 205.4};  // of 512 x 424
+  EXPECT_TRUE(oneMentions(slam::whatIsUnusual(camera), {"640 x 480", "cut"}));
+  camera.pinhole = {1070.8, 539.2, 320.1, 247.6};
+  EXPECT_TRUE(oneMentions(slam::whatIsUnusual(camera), {"differ by 99 %", "square"}));
+}
+
+TEST_F(Calibration, ARateOfZeroDoesNotMatter) {
+  EXPECT_EQ(read(replaced(kStock, "Camera.fps: 30.0", "Camera.fps: 0")).frame_rate,
+            CameraCalibration{}.frame_rate);
+}
+
 TEST_F(Calibration, OtherNamesOfAPinholeAndItsDepthFactorAreRead) {
   const std::string stock = kStock;
   for (const char* model : {"Radtan", "PinHole", "plumb_bob", "pinhole-radtan", "OPENCV"}) {
@@ -225,6 +313,13 @@ TEST_F(Calibration, ValuesThatNoCameraHasAreRefusedWithThoseThatFit) {
        withIntrinsics("1562", "1563", "976", "749"),
        {"1920 x 1440", "fx 520.667"}},
       {"shares", withIntrinsics("0.8139", "1.0854", "0.508", "0.5202"), {"shares", "fx 520.896"}},
+      {"millimetres", withIntrinsics("4.2", "4.2", "325.1", "249.7"), {"millimetres", "pixels"}},
+      {"of 1920 x 1080",
+       withIntrinsics("1081", "1081", "959.5", "539.5"),
+       {"outside", "1920 x 1080"}},
+      {"distortion in per cent",
+       replaced(replaced(stock, "0.231222", "26.2"), "-0.784899", "-95.3"),
+       {"the distortion k1 26.2", "twice"}},
       {"principal point outside",
        withIntrinsics("520", "521", "1320", "249"),
        {"(1320, 249) is outside the image of 640 x 480"}},
@@ -270,6 +365,7 @@ TEST_F(Calibration, CamerasThatThereAreArePlausible) {
     camera.width = kind.width;
     camera.height = kind.height;
     EXPECT_EQ(slam::whatIsImplausible(camera), "") << kind.pinhole.fx;
+    EXPECT_TRUE(slam::whatIsUnusual(camera).empty()) << kind.pinhole.fx;
   }
   for (const std::string& name : slam::cameraPresetNames()) {
     EXPECT_EQ(slam::whatIsImplausible(slam::loadCamera(name)), "") << name;
@@ -310,6 +406,26 @@ TEST_F(Calibration, DepthsThatNoCameraSeesAreSaidWithTheFactorThatFits) {
   EXPECT_TRUE(mentions(slam::whatIsOddAbout(around(13.4f), 1000.0),
                        {"large for a depth camera", "13.3 m", "5000", "2.65 m"}));
   EXPECT_EQ(slam::whatIsOddAbout(around(12.0f), 5000.0), "");
+  // A Kinect's disparities of 1/8 px, 580 px * 0.075 m apart, in whole millimetres: from 2 to 4 m,
+  // each eight times.
+  std::vector<float> steps;
+  for (int i = 0; i < 8 * 88; ++i) {
+    const int eighths = 87 + i / 8;
+    steps.push_back(
+        static_cast<float>(std::round(1000.0 * 580.0 * 0.075 * 8.0 / eighths) / 1000.0));
+  }
+  EXPECT_EQ(slam::whatIsOddAbout(steps, 1000.0), "");
+  std::vector<float> as_fives = steps;
+  std::vector<float> as_millimetres = steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    as_fives[i] = 0.2f * steps[i];
+    as_millimetres[i] = 5.0f * steps[i];
+  }
+  EXPECT_TRUE(mentions(slam::whatIsOddAbout(as_fives, 5000.0),
+                       {"five times those of structured light", "with 1000", "millimetres"}));
+  EXPECT_TRUE(mentions(slam::whatIsOddAbout(as_millimetres, 1000.0), {"with 5000"}));
+  EXPECT_TRUE(mentions(slam::whatIsOddAbout(std::vector<float>(50, 13.107f), 5000.0),
+                       {"13.1 m nearly everywhere", "depth images"}));
   for (const float metres : {0.8f, 2.0f, 5.0f, 8.0f}) {
     EXPECT_EQ(slam::whatIsOddAbout(around(metres), 5000.0), "") << metres;
     EXPECT_EQ(slam::whatIsOddAbout(around(metres), 1000.0), "") << metres;

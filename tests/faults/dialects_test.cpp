@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kind 7: tables as other programs write them.
+#include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "evaluate/pose_convention.hpp"
 #include "evaluate/trajectory.hpp"
 #include "fault_input.hpp"
 #include "slam/dataset/tum_dataset.hpp"
@@ -36,6 +40,13 @@ std::vector<Dialect> dialectsOf(const std::string& text) {
           {"UTF-16 without its mark", utf16(text, false).substr(2)},
           {"CRLF", replaced(text, "\n", "\r\n")},
           {"CR", replaced(text, "\n", "\r")},
+          {"CR, behind a comment with LF", "# joined\n" + replaced(text, "\n", "\r")},
+          {"CR CR LF", replaced(text, "\n", "\r\r\n")},
+          {"line separators of Unicode", replaced(text, "\n", "\xE2\x80\xA8")},
+          {"UTF-16 without its mark, a comment in another script",
+           std::string("#\0 \0\x2D\x4E\n\0", 8) + utf16(text, false).substr(2)},
+          {"zeros behind it, as of a file that was not closed", text + std::string(64, '\0')},
+          {"DOS's end of file", text + "\x1A"},
           {"tabs with CRLF, no final newline",
            replaced(replaced(text.substr(0, text.size() - 1), " ", "\t"), "\n", "\r\n")},
           {"trailing blanks and tabs", replaced(text, "\n", " \t \n")},
@@ -130,6 +141,78 @@ TEST_F(Dialects, CommasThatSeparateAndPointAreNamed) {
   EXPECT_TRUE(mentions(
       messageOf<std::runtime_error>([&] { evaluate::parseTrajectory("1,5\n", "poses.txt"); }),
       {"poses.txt:1: 2 fields"}));
+}
+
+TEST_F(Dialects, OtherFormatsOfPosesAreNamed) {
+  struct Kind {
+    const char* line;
+    const char* said;
+  };
+  for (const Kind& kind : std::vector<Kind>{{"1 0 0 0 0 1 0 0 0 0 1 0\n", "KITTI"},
+                                            {"7 1 0 0 0 0 1 0 0 0 0 1 0\n", "KITTI"},
+                                            {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "4 x 4"},
+                                            {"1 0 0 0\n", "without its rotation"},
+                                            {"1.5 0 0 0 10 20 30\n", "angles"},
+                                            {"7 1.5 0 0 0 0 0 0 1\n", "frame number"},
+                                            {"1,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n", "EuRoC"},
+                                            {"2012-07-09T15:07:14 0 0 0 0 0 0 1\n", "date"}}) {
+    EXPECT_TRUE(mentions(
+        messageOf<std::runtime_error>([&] { evaluate::parseTrajectory(kind.line, "poses.txt"); }),
+        {"poses.txt:1: ", kind.said}));
+  }
+}
+
+/// Camera poses on an arc, turning about two axes; `change` as another program would write them.
+evaluate::Trajectory arc(const std::function<Eigen::Isometry3d(const Eigen::Isometry3d&)>& change) {
+  evaluate::Trajectory poses;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 0.03 * i;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = (Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()) *
+                     Eigen::AngleAxisd(1.0 + 0.5 * angle, Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+    pose.translation() = Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.1 * angle);
+    evaluate::StampedPose stamped;
+    stamped.timestamp = 0.1 * i;
+    stamped.pose = change(pose);
+    poses.push_back(stamped);
+  }
+  return poses;
+}
+
+TEST_F(Dialects, ConventionsThatNormAndFormatDoNotShowAreTold) {
+  const auto as_it_is = [](const Eigen::Isometry3d& pose) { return pose; };
+  const auto w_first = [](const Eigen::Isometry3d& pose) {
+    const Eigen::Quaterniond q(pose.linear());
+    Eigen::Isometry3d other = pose;  // w x y z in the columns of x y z w
+    other.linear() = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
+    return other;
+  };
+  const auto inverted = [](const Eigen::Isometry3d& pose) { return pose.inverse(); };
+  const auto in_mm = [](const Eigen::Isometry3d& pose) {
+    Eigen::Isometry3d other = pose;
+    other.translation() *= 1000.0;
+    return other;
+  };
+  const auto in_another_world = [](const Eigen::Isometry3d& pose) {
+    Eigen::Isometry3d world = Eigen::Isometry3d::Identity();
+    world.linear() = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    world.translation() = Eigen::Vector3d(5.0, -3.0, 1.0);
+    return world * pose;
+  };
+  const evaluate::Trajectory truth = arc(as_it_is);
+  EXPECT_EQ(evaluate::otherConvention(truth, truth), "");
+  EXPECT_EQ(evaluate::otherConvention(truth, arc(in_another_world)), "");
+  EXPECT_TRUE(
+      mentions(evaluate::otherConvention(truth, arc(w_first)), {"the estimate's", "w came first"}));
+  EXPECT_TRUE(mentions(evaluate::otherConvention(arc(w_first), truth),
+                       {"the ground truth's", "w came first"}));
+  EXPECT_TRUE(
+      mentions(evaluate::otherConvention(truth, arc(inverted)), {"the estimate's", "inverted"}));
+  EXPECT_TRUE(
+      mentions(evaluate::otherConvention(truth, arc(in_mm)), {"the estimate's", "millimetres"}));
+  EXPECT_TRUE(mentions(evaluate::otherConvention(arc(in_mm), truth),
+                       {"the ground truth's", "millimetres"}));
 }
 
 TEST_F(Dialects, APoseThatIsNoneIsLeftOutAndCounted) {

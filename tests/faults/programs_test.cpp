@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kind 10, and the same care in every program, as a user meets them: processes with exit codes.
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "fault_input.hpp"
 #include "pipeline/shell.hpp"
@@ -69,6 +71,51 @@ TEST_F(Programs, TheEvaluationSaysWhatItLeftOutAndHowFewItIsOf) {
                                                   "1341846501 nan nan nan 0 0 0 0\n");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
   EXPECT_TRUE(mentions(outcome.text, {"1 of 22 lines are left out"}));
+}
+
+TEST_F(Programs, TheEvaluationSaysWhatHelpsWhereTheClocksDiffer) {
+  std::string shifted;
+  for (const std::string& line : linesOf(poses(""))) {
+    shifted += std::to_string(std::stol(line) - 1341846000) + line.substr(line.find(' ')) + "\n";
+  }
+  const Outcome outcome = evaluate(poses(""), shifted);
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.text;
+  EXPECT_TRUE(mentions(outcome.text, {"0 of 20 poses", "the offset is 1341846000.000"}));
+}
+
+TEST_F(Programs, ASceneThatThereIsNotIsWrongUsage) {
+  const Outcome outcome = runShell(std::string(HMCDYN_SYNTHESIZE) + " -s walkingxyz -o " +
+                                   (folder_.path() / "o").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+  EXPECT_TRUE(mentions(outcome.text, {"walkingxyz", "walking_xyz"}));
+}
+
+TEST_F(Programs, MasksOfAnotherRecordingOrSizeAreNotScored) {
+  const std::filesystem::path truth = folder_.path() / "scene" / "mask";
+  std::filesystem::create_directories(truth);
+  cv::imwrite((truth / "1.000000.png").string(), cv::Mat(8, 8, CV_8UC1, cv::Scalar(255)));
+  const auto score = [&](const char* name, int side) {
+    const std::filesystem::path masks = folder_.path() / name;
+    std::filesystem::create_directories(masks);
+    cv::imwrite((masks / name).string() + ".png", cv::Mat(side, side, CV_8UC1, cv::Scalar(255)));
+    return runShell(std::string(HMCDYN_MASK_SCORE) + " --skip-frames 0 " +
+                    (folder_.path() / "scene").string() + ":" + masks.string());
+  };
+  EXPECT_EQ(score("1.0", 8).exit_code, 0);
+  const Outcome other = score("2.0", 8);
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_TRUE(mentions(other.text, {"none of its 1 images", "another recording"}));
+  const Outcome small = score("1.00", 4);
+  EXPECT_EQ(small.exit_code, 1);
+  EXPECT_TRUE(mentions(small.text, {"1.00.png: is 4 x 4 pixels; expected 8 x 8"}));
+}
+
+TEST_F(Programs, LabelsWithoutAKeyPointAreNotScored) {
+  const Outcome outcome = runShell(
+      std::string(HMCDYN_LABEL_SCORE) + " " + folder_.path().string() + ":" +
+      folder_.write("k.csv", "timestamp,u,v,depth,distance,cluster,label,weight\n").string());
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.text;
+  EXPECT_TRUE(mentions(outcome.text, {"k.csv", "no key point"}));
 }
 
 TEST_F(Programs, ATableOfRunsNamesASummaryThatIsNone) {

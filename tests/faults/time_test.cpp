@@ -128,6 +128,18 @@ TEST_F(Time, WhatNobodyCanTellIsAskedFor) {
       {"each three times",
        [](double t, std::size_t i) { return fmt::format("{:.6f}", t - double(i % 3) / 30.0); },
        {"other files than in line 1", "8 lines have 3 different stamps"}},
+      {"ticks of Windows",
+       [](double t, std::size_t) { return fmt::format("{:.0f}", 1e7 * (12986320034.0 + t)); },
+       {"ticks of 100 ns", "in seconds"}},
+      {"ticks of .NET",
+       [](double t, std::size_t) { return fmt::format("{:.0f}", 1e7 * (63477443234.0 + t)); },
+       {"ticks of 100 ns", "in seconds"}},
+      {"dates",
+       [](double t, std::size_t) { return fmt::format("2012-07-09T15:07:{:09.6f}", t - 990.0); },
+       {"rgb.txt:1: time stamp is '2012-07-09T15", "date"}},
+      {"dates with a blank",
+       [](double t, std::size_t) { return fmt::format("2012-07-09 15:07:{:09.6f}", t - 990.0); },
+       {"rgb.txt:1: 3 fields", "date"}},
       {"rounded to seconds",
        [](double t, std::size_t) { return fmt::format("{:.0f}", t); },
        {"other files than in line 1", "rounded to seconds"}},
@@ -163,6 +175,12 @@ TEST_F(Time, StampsThatGoBackAreSaidAndUnpaddedFractionsNamed) {
     EXPECT_TRUE(mentions(messageOf<std::runtime_error>([&] { slam::readFrameList(toy()); }),
                          {"rgb.txt", "go back", unit, "without leading zeros"}));
   }
+}
+
+TEST_F(Time, ATimeStampBehindItsFileIsNamed) {
+  write("associations.txt", "rgb/1.png 1.0 depth/1.png 1.0\n");
+  EXPECT_TRUE(mentions(messageOf<std::runtime_error>([&] { slam::readFrameList(toy()); }),
+                       {"associations.txt:1: time stamp is 'rgb/1.png'", "comes first"}));
 }
 
 TEST_F(Time, TheUserDecidesWhatIsAsked) {

@@ -111,6 +111,37 @@ TEST_F(Carrier, ABoxGrowsWithTheThing) {
   expectNear(boxes[0], {160 - half, 120 - half, 160 + half, 120 + half});
 }
 
+TEST_F(Carrier, ANearPersonWhoseLimbsSwingIsFollowed) {
+  // 280 x 420 px, a diagonal of 505: its upper and lower parts, of two in seven rows of points
+  // each, move by less and more than its middle, which moves 20 px to the right.
+  const cv::Mat wall = test::makeTexture({640, 480}, 5);
+  const cv::Mat thing = test::makeTexture({280, 420}, 6);
+  const auto carriedAfter = [&](int swing) {
+    BoxCarrier carrier;
+    std::vector<DetectionBox> boxes;
+    for (int i = 0; i < 2; ++i) {
+      CarriedFrame frame;
+      frame.index = static_cast<std::size_t>(i);
+      frame.timestamp = 10.0 + 0.05 * i;
+      frame.gray = wall.clone();
+      frame.depth = cv::Mat(480, 640, CV_32FC1, cv::Scalar(4.0));
+      for (int part = -1; part <= 1; ++part) {
+        const cv::Rect rows(0, part < 0 ? 0 : part == 0 ? 120 : 300, 280, part == 0 ? 180 : 120);
+        const cv::Rect place = rows + cv::Point(100 + i * (20 + part * swing), 30);
+        thing(rows).copyTo(frame.gray(place));
+        frame.depth(place).setTo(1.5);
+      }
+      boxes = carrier.update(
+          frame, i == 0 ? std::optional(FrameDetection{0, {{100, 30, 380, 450}}}) : std::nullopt);
+    }
+    return boxes;
+  };
+  const std::vector<DetectionBox> boxes = carriedAfter(8);  // 2 % of the diagonal are 10.1 px
+  ASSERT_EQ(boxes.size(), 1U);
+  EXPECT_NEAR(boxes[0].x_min, 120.0f, kTolerance);
+  EXPECT_TRUE(carriedAfter(14).empty());  // not one thing
+}
+
 TEST_F(Carrier, AMissedBoxIsBridgedUntilTheAgeLimit) {
   BoxCarrierOptions options;
   options.max_bridge = 0.15;  // three frames

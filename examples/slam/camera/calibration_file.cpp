@@ -86,9 +86,11 @@ void readDistortionList(const SettingsFile& settings, const std::string& key,
     list.resize(kDistortionKeys.size());  // a model with more coefficients, which are 0
   }
   if (list.size() != 4 && list.size() != 5) {
-    throw settings.failure(key, fmt::format("has {} numbers; expected k1, k2, p1, p2 and "
-                                            "perhaps k3",
-                                            list.size()));
+    throw settings.failure(
+        key, fmt::format("has {} numbers; expected k1, k2, p1, p2 and perhaps k3{}", list.size(),
+                         list.size() > kDistortionKeys.size()
+                             ? ": rectify the images of a camera with the rational model"
+                             : ""));
   }
   std::copy(list.begin(), list.end(), calibration.distortion.begin());
 }
@@ -147,29 +149,38 @@ std::optional<std::string> prefixOf(const SettingsFile& settings) {
                      : std::optional(key.substr(0, key.size() - lastPart(key).size()));
 }
 
-// A pinhole with k1, k2, p1, p2 and k3, by any of its names.
+// A pinhole with k1, k2, p1, p2 and k3, by any of its names. The rational model is one where its
+// other coefficients are 0, as is seen when they are read.
 bool isOurModel(const std::string& name) {
   std::string letters;
   std::copy_if(name.begin(), name.end(), std::back_inserter(letters),
                [](unsigned char c) { return std::isalnum(c) != 0; });
-  const std::vector<std::string> known{
-      "pinhole",         "rectified",    "perspective",         "radtan",
-      "plumbbob",        "brown",        "brownconrady",        "opencv",
-      "pinholeradtan",   "pinholebrown", "pinholebrownconrady", "none",
-      "radialtangential"};
+  const std::vector<std::string> known{"pinhole",
+                                       "rectified",
+                                       "perspective",
+                                       "radtan",
+                                       "plumbbob",
+                                       "brown",
+                                       "brownconrady",
+                                       "opencv",
+                                       "pinholeradtan",
+                                       "pinholebrown",
+                                       "pinholebrownconrady",
+                                       "none",
+                                       "radialtangential",
+                                       "rationalpolynomial",
+                                       "undistorted"};
   return std::find(known.begin(), known.end(), lower(letters)) != known.end();
 }
 
-// "Camera.type", "Camera.model", "model_type", "camera_model".
+// "Camera.type", "Camera.model", "model_type", "camera_model", and what lenses are said to do.
 void requirePinhole(const SettingsFile& settings) {
-  const std::string key = settings.firstOf({"Camera.type", "Camera.model", "model_type",
-                                            "camera_model", "cam0.camera_model", "Camera0.model"});
-  if (key.empty()) {
-    return;
-  }
-  const std::string distortion = keyEndingIn(settings, {"distortion_model"});
-  for (const std::string& model : {key, distortion}) {
-    if (!model.empty() && !isOurModel(settings.text(model))) {
+  const std::string camera =
+      settings.firstOf({"Camera.type", "Camera.model", "model_type", "camera_model",
+                        "cam0.camera_model", "Camera0.model"});
+  const std::string distortion = keyEndingIn(settings, {"distortion_model", "distortion_type"});
+  for (const std::string& model : {camera, distortion}) {
+    if (!model.empty() && !settings.text(model).empty() && !isOurModel(settings.text(model))) {
       throw settings.failure(
           model, fmt::format("is '{}'; expected PinHole or Rectified, with k1, k2, p1, p2 and k3 "
                              "(radtan, plumb_bob): rectify the images for others",
@@ -178,10 +189,44 @@ void requirePinhole(const SettingsFile& settings) {
   }
 }
 
+std::string parentOf(const std::string& key) {
+  return key.substr(0, key.size() - lastPart(key).size());
+}
+
+// What is distortion by its name, and of the same camera: a list, as ROS, OpenCV, EuRoC and Kalibr
+// write it, or k1, k2, ... in a group of its own. Others than these are another camera's.
+void readForeignDistortion(const SettingsFile& settings, const std::string& prefix,
+                           CameraCalibration& calibration) {
+  const std::string beside = parentOf(prefix.substr(0, prefix.size() - (prefix.empty() ? 0 : 1)));
+  for (const std::string& parent : {prefix, beside}) {
+    for (const char* group : {"distortion_parameters.", "distortion."}) {
+      if (settings.has(parent + group + "k1")) {
+        for (std::size_t i = 0; i < kDistortionKeys.size(); ++i) {
+          const std::string key = parent + group + kDistortionKeys.at(i);
+          calibration.distortion.at(i) = settings.has(key) ? settings.number(key) : 0.0;
+        }
+        refuseRationalModel(settings, parent + group);
+        return;
+      }
+    }
+    for (const char* name :
+         {"distortion_coefficients", "distortion_coeffs", "Distortion_Coefficients", "distCoeffs",
+          "dist_coeffs", "distortion", "D", "d"}) {
+      const std::string key = settings.firstOf({parent + name + ".data", parent + name});
+      const Setting* const found = key.empty() ? nullptr : settings.find(key);
+      if (found != nullptr && found->is_list && !found->scalars.empty()) {
+        readDistortionList(settings, key, calibration);
+        return;
+      }
+    }
+  }
+}
+
 // A camera matrix by rows, as OpenCV and ROS write it, or fx, fy, cx, cy in a list, as Kalibr does.
 bool readMatrix(const SettingsFile& settings, CameraCalibration& calibration) {
-  const std::string matrix = settings.firstOf(
-      {"camera_matrix.data", "cameraMatrix.data", "Camera_Matrix.data", "K.data", "K", "Camera.K"});
+  const std::string matrix =
+      settings.firstOf({"camera_matrix.data", "cameraMatrix.data", "Camera_Matrix.data", "K.data",
+                        "K", "Camera.K", "k"});
   const std::string list = settings.firstOf({"cam0.intrinsics", "intrinsics", "Camera.intrinsics"});
   const std::string& key = matrix.empty() ? list : matrix;
   if (key.empty()) {
@@ -199,12 +244,7 @@ bool readMatrix(const SettingsFile& settings, CameraCalibration& calibration) {
   if (!(calibration.pinhole.fx > 0.0 && calibration.pinhole.fy > 0.0)) {
     throw settings.failure(key, "has a focal length that is not above 0");
   }
-  const std::string distortion =
-      settings.firstOf({"distortion_coefficients.data", "Distortion_Coefficients.data",
-                        "cam0.distortion_coeffs", "distortion_coeffs", "distCoeffs.data"});
-  if (!distortion.empty()) {
-    readDistortionList(settings, distortion, calibration);
-  }
+  readForeignDistortion(settings, parentOf(key.substr(0, key.rfind(".data"))), calibration);
   return true;
 }
 
@@ -261,6 +301,9 @@ CameraCalibration readForeign(const SettingsFile& settings) {
   if (prefix) {
     readIntrinsics(settings, *prefix, calibration);
     refuseRationalModel(settings, *prefix);
+    if (!settings.has(*prefix + kDistortionKeys.front())) {
+      readForeignDistortion(settings, *prefix, calibration);
+    }
   } else if (!readMatrix(settings, calibration)) {
     std::vector<std::string> some;
     for (const Setting& setting : settings.settings()) {
@@ -278,8 +321,8 @@ CameraCalibration readForeign(const SettingsFile& settings) {
   calibration.depth_factor = readDepthFactor(settings);
   readSize(settings, prefix.value_or(""), calibration);
   const std::string rate = keyEndingIn(settings, {"fps", "frame_rate"});
-  if (!rate.empty()) {
-    calibration.frame_rate = settings.positive(rate);
+  if (!rate.empty() && settings.number(rate) > 0.0) {  // 0: as fast as it goes
+    calibration.frame_rate = settings.number(rate);
   }
   // A file may hold any baseline, as nothing here depends on it.
   const std::string metres = settings.firstOf({"Stereo.b"});

@@ -32,7 +32,14 @@ PinholeCamera scaled(const PinholeCamera& camera, double scale) {
 std::string whatIsWrongWithFocal(const CameraCalibration& calibration) {
   const PinholeCamera& camera = calibration.pinhole;
   constexpr double kLargestShare = 10.0;
-  if (camera.fx < kLargestShare && camera.fy < kLargestShare) {
+  const bool is_small = camera.fx < kLargestShare && camera.fy < kLargestShare;
+  if (is_small && camera.cx > kLargestShare && camera.cy > kLargestShare) {
+    return fmt::format(
+        "fx {:g} and fy {:g} look like millimetres, as cx {:g} and cy {:g} are pixels; expected "
+        "pixels: the focal length times the image's columns over the sensor's width",
+        camera.fx, camera.fy, camera.cx, camera.cy);
+  }
+  if (is_small) {
     return fmt::format(
         "fx {:g} and fy {:g} look like shares of the image's sides; expected pixels{}", camera.fx,
         camera.fy,
@@ -86,9 +93,13 @@ std::string whatIsWrongWithCentre(const CameraCalibration& calibration) {
         camera.cy < calibration.height)) {
     return fmt::format(
         "the principal point ({:g}, {:g}) is outside the image of {} x {}; expected it near ({:g}, "
-        "{:g})",
+        "{:g}){}",
         camera.cx, camera.cy, calibration.width, calibration.height, 0.5 * calibration.width - 0.5,
-        0.5 * calibration.height - 0.5);
+        0.5 * calibration.height - 0.5,
+        across > 0.0 && down > 0.0
+            ? fmt::format(" (it is the centre of an image of about {:.0f} x {:.0f})",
+                          across * calibration.width, down * calibration.height)
+            : "");
   }
   return {};
 }
@@ -106,18 +117,19 @@ double stretchAtBorder(const CameraCalibration& calibration) {
 }
 
 // A lens is one to one up to its border: with k1 alone the model folds over where it squeezes to
-// two thirds, so a third is no lens's, nor is, stretched, three times.
+// two thirds, so a third is no lens's, nor is, stretched, twice: pincushions are of some per cent.
 std::string whatIsWrongWithDistortion(const CameraCalibration& calibration) {
-  constexpr double kAtMost = 3.0;
+  constexpr double kLeast = 1.0 / 3.0;
+  constexpr double kAtMost = 2.0;
   const double stretch = stretchAtBorder(calibration);
-  if (stretch >= 1.0 / kAtMost && stretch <= kAtMost) {
+  if (stretch >= kLeast && stretch <= kAtMost) {
     return {};
   }
   const auto& [k1, k2, p1, p2, k3] = calibration.distortion;
   return fmt::format(
       "the distortion k1 {:g}, k2 {:g}, p1 {:g}, p2 {:g}, k3 {:g} is no lens's: it would put the "
       "border of an image of {} x {} at {:.3g} times its distance from the centre; expected a "
-      "third to 3 times (k1 is seldom above 1; are these values of other keys?)",
+      "third to twice (k1 is seldom above 1; are these values of other keys?)",
       k1, k2, p1, p2, k3, calibration.width, calibration.height, stretch);
 }
 
@@ -132,6 +144,38 @@ std::string length(double metres) {
   return metres >= 1000.0 ? fmt::format("{:.3g} km", metres / 1000.0)
          : metres >= 0.1  ? fmt::format("{:.3g} m", metres)
                           : fmt::format("{:.2g} cm", 100.0 * metres);
+}
+
+/// The depth factor that the steps between the depths around their median tell, if they are those
+/// of structured light, which measures disparities of 1/8 px with a focal length of 580 px and a
+/// baseline of 7.5 cm: z^2 / 348 m. 0 where they are finer than a few units.
+double factorByStepsOfStructuredLight(const std::vector<float>& depths, double median,
+                                      double depth_factor) {
+  constexpr double kAround = 0.05;        // of the median
+  constexpr double kInverseStep = 348.0;  // 1 / m
+  constexpr double kLeastStep = 3.0;      // units; below, it is the file's resolution
+  std::vector<double> levels;
+  for (const float depth : depths) {
+    if (std::abs(depth - median) < kAround * median) {
+      levels.push_back(std::round(static_cast<double>(depth) * depth_factor));
+    }
+  }
+  const std::size_t around = levels.size();
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  constexpr std::size_t kFew = 6;    // levels
+  constexpr std::size_t kOften = 5;  // depths a level; else the gaps are those of the sample
+  if (levels.size() < kFew || around < kOften * levels.size()) {
+    return 0.0;
+  }
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    steps.push_back(levels[i] - levels[i - 1]);
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double value = median * depth_factor;
+  return *middle < kLeastStep ? 0.0 : value * value / (kInverseStep * *middle);
 }
 
 }  // namespace
@@ -192,6 +236,40 @@ CameraCalibration fittedTo(CameraCalibration calibration, cv::Size image, const 
   return calibration;
 }
 
+std::vector<std::string> whatIsUnusual(const CameraCalibration& calibration) {
+  std::vector<std::string> unusual;
+  const PinholeCamera& camera = calibration.pinhole;
+  constexpr double kSquare = 1.15;  // sides of a pixel; today's are square within 1 %
+  if (camera.fx > kSquare * camera.fy || camera.fy > kSquare * camera.fx) {
+    unusual.push_back(fmt::format(
+        "fx {:g} and fy {:g} differ by {:.0f} %, pixels of cameras are square; were the images "
+        "scaled in one direction, or is one of them another's?",
+        camera.fx, camera.fy,
+        100.0 * (std::max(camera.fx, camera.fy) / std::min(camera.fx, camera.fy) - 1.0)));
+  }
+  if (calibration.width <= 0 || calibration.height <= 0) {
+    return unusual;
+  }
+  const auto off = [](double coordinate, int side) {
+    return std::abs(coordinate + 0.5 - 0.5 * side) / side;
+  };
+  constexpr double kCentred = 0.1;  // image sides; lenses sit within some per cent of the centre
+  const double across = off(camera.cx, calibration.width);
+  const double down = off(camera.cy, calibration.height);
+  if (across <= kCentred && down <= kCentred) {
+    return unusual;
+  }
+  const bool is_swapped = across > kCentred && down > kCentred &&
+                          off(camera.cy, calibration.width) < 0.5 * kCentred &&
+                          off(camera.cx, calibration.height) < 0.5 * kCentred;
+  unusual.push_back(fmt::format(
+      "the principal point ({:g}, {:g}) is far from the centre of images of {} x {}; {}", camera.cx,
+      camera.cy, calibration.width, calibration.height,
+      is_swapped ? "are cx and cy swapped?"
+                 : "is it of an image that was cut or has another size?"));
+  return unusual;
+}
+
 std::string whatIsOddAbout(std::vector<float> depths, double depth_factor) {
   if (depths.empty()) {
     return {};
@@ -207,6 +285,9 @@ std::string whatIsOddAbout(std::vector<float> depths, double depth_factor) {
   constexpr double kTums = 5000.0;
   const bool is_fine = depth_factor >= 2000.0;  // finer than millimetres
   std::string odd;
+  if (near == far) {
+    return fmt::format("depths are {} nearly everywhere; are these depth images?", length(median));
+  }
   if (median > kFarthest || median < kNearest) {
     odd = fmt::format("depths have a median of {}", length(median));
   } else if (is_fine && near < kUsualNear && far < kUsualFar && median < 1.0) {
@@ -215,7 +296,17 @@ std::string whatIsOddAbout(std::vector<float> depths, double depth_factor) {
   } else if (!is_fine && median > kReach) {
     odd = fmt::format("depths are large for a depth camera (median {})", length(median));
   } else {
-    return {};
+    // Fives, between millimetres and TUM's factor, cannot be taken for a camera's other baseline.
+    const double by_steps = factorByStepsOfStructuredLight(depths, median, depth_factor);
+    constexpr double kNearly = 1.35;
+    const double times = by_steps > 0.0 ? depth_factor / by_steps : 1.0;
+    const bool is_five = (times > 5.0 / kNearly && times < 5.0 * kNearly) ||
+                         (times < kNearly / 5.0 && times > 1.0 / (5.0 * kNearly));
+    if (!is_five) {
+      return {};
+    }
+    odd = fmt::format("the steps between depths near {} are {} those of structured light",
+                      length(median), times > 1.0 ? "some five times" : "a fifth of");
   }
   for (const double factor : {1000.0, kTums}) {
     const double fitting = median * depth_factor / factor;

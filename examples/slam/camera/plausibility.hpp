@@ -18,6 +18,10 @@ namespace hmcdyn::slam {
 /// does not need it.
 std::string whatIsImplausible(const CameraCalibration& calibration);
 
+/// What cameras seldom have, a sentence each: pixels that are not square, a principal point far
+/// from the centre.
+std::vector<std::string> whatIsUnusual(const CameraCalibration& calibration);
+
 /// True for a stereo baseline times fx (m px) of a camera: baselines of 5 mm to 5 m.
 bool isBaseline(double baseline_fx, double fx);
 
@@ -28,7 +32,9 @@ CameraCalibration fittedTo(CameraCalibration calibration, cv::Size image, const 
 
 /// What is odd about the depths of some frames, with the depth factor that would fit: a median
 /// beyond 20 m or below 5 cm; nearer and smaller throughout than depth cameras see, as millimetres
-/// read with a factor of 5000 are; a median beyond 10 m, as TUM's depths read as millimetres have.
+/// read with a factor of 5000 are; a median beyond 10 m, as TUM's depths read as millimetres have;
+/// the same depth nearly everywhere; steps of five times or a fifth of what a Kinect's disparities
+/// make.
 /// Empty where nothing is, or there is no depth.
 /// @param depths in metres, above 0, of whole images.
 std::string whatIsOddAbout(std::vector<float> depths, double depth_factor);

@@ -140,6 +140,40 @@ std::string guessOfValue(const Setting& setting) {
              : "";
 }
 
+/// What a file without a single "key: value" may be, by its first line that is no comment.
+std::string guessOfFile(const std::vector<std::string>& lines) {
+  const auto first = std::find_if_not(lines.begin(), lines.end(), [](const std::string& line) {
+    return isLeftOut(line) || isMark(line) || line.front() == '[';
+  });
+  if (first == lines.end()) {
+    return {};
+  }
+  if (first->find('=') != std::string::npos) {
+    return "; its lines have equals signs, as INI files do: write \"key: value\"";
+  }
+  std::istringstream stream(*first);
+  std::vector<std::string> fields;
+  for (std::string field; stream >> field;) {
+    fields.push_back(std::move(field));
+  }
+  double ignored = 0.0;
+  const bool numbers = std::all_of(
+      fields.begin(), fields.end(),
+      [&ignored](const std::string& field) { return support::parseNumber(field, ignored); });
+  if (numbers) {
+    return "; numbers alone do not say what they are: write \"fx: ...\", \"fy: ...\", \"cx: ...\", "
+           "\"cy: ...\", \"depth_factor: ...\"";
+  }
+  constexpr std::size_t kColmap = 5;  // number, model, width, height, and at least one parameter
+  const bool is_model = fields.size() >= kColmap &&
+                        std::all_of(fields[1].begin(), fields[1].end(), [](unsigned char c) {
+                          return std::isupper(c) != 0 || c == '_' || std::isdigit(c) != 0;
+                        });
+  return is_model ? "; is this COLMAP's cameras.txt? Write width, height, fx, fy, cx, cy and "
+                    "depth_factor"
+                  : "";
+}
+
 }  // namespace
 
 SettingsFile::SettingsFile(std::filesystem::path file) : file_(std::move(file)) {
@@ -166,7 +200,7 @@ SettingsFile::SettingsFile(std::filesystem::path file) : file_(std::move(file)) 
   }
   readBlock(block, first);
   if (settings_.empty()) {
-    throw failure("has no settings; expected lines \"key: value\"");
+    throw failure("has no settings; expected lines \"key: value\"" + guessOfFile(lines_));
   }
 }
 

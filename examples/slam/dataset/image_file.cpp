@@ -57,6 +57,10 @@ cv::Mat readImage(const std::filesystem::path& file) {
   if (bytes.empty()) {
     throw std::runtime_error(fmt::format("{}: is empty; expected an image", file.string()));
   }
+  if (bytes.rfind("version https://git-lfs", 0) == 0) {
+    throw std::runtime_error(fmt::format(
+        "{}: is Git LFS's pointer to an image; fetch it with \"git lfs pull\"", file.string()));
+  }
   if (isTruncatedPng(bytes)) {
     throw std::runtime_error(
         fmt::format("{}: truncated PNG, cut off after {} bytes", file.string(), bytes.size()));

@@ -86,6 +86,9 @@ Recording openRecording(const std::filesystem::path& folder, const std::string& 
     return recording;
   }
   recording.calibration = fittedTo(recording.calibration, seen.image, camera);
+  for (const std::string& unusual : whatIsUnusual(recording.calibration)) {
+    recording.list.notes.push_back(fmt::format("camera {}: {}", camera, unusual));
+  }
   std::vector<float> metres = seen.depths;
   for (float& depth : metres) {
     depth /= static_cast<float>(recording.calibration.depth_factor);

@@ -124,14 +124,15 @@ List readList(const fs::path& file, std::size_t files_per_line, const DatasetOpt
   for (const support::TextRow& row : table.rows) {
     if (row.fields.size() != 2 * files_per_line) {
       throw errorAt(file, row.line,
-                    fmt::format("{} fields; expected \"{}\"", row.fields.size(),
-                                files_per_line == 1 ? "time file" : "time rgb time depth"));
+                    fmt::format("{} fields; expected \"{}\"{}", row.fields.size(),
+                                files_per_line == 1 ? "time file" : "time rgb time depth",
+                                support::guessOfStamp(row.fields.front())));
     }
     ListLine line;
     line.line = row.line;
-    line.timestamp = parseFinite(row.fields.front(), "time stamp", file, row.line);
+    line.timestamp = support::parseStamp(row.fields.front(), "time stamp", file.string(), row.line);
     for (std::size_t i = 0; i < files_per_line; ++i) {
-      parseFinite(row.fields[2 * i], "time stamp", file, row.line);
+      support::parseStamp(row.fields[2 * i], "time stamp", file.string(), row.line);
       line.files.push_back(row.fields[2 * i + 1]);
     }
     list.lines.push_back(std::move(line));
@@ -203,7 +204,19 @@ std::string noteOfRates(const std::vector<double>& rgb, const std::vector<double
                      of_rgb);
 }
 
+void requireLists(const fs::path& folder) {
+  for (const char* name : {"rgb.txt", "depth.txt"}) {
+    if (!fs::exists(folder / name)) {
+      throw std::runtime_error(
+          fmt::format("{}: no such file; expected a folder in TUM format: associations.txt, or "
+                      "rgb.txt and depth.txt with lines \"time file\"",
+                      (folder / name).string()));
+    }
+  }
+}
+
 FrameList pairByTime(const fs::path& folder, const DatasetOptions& options) {
+  requireLists(folder);
   const List rgb = readList(folder / "rgb.txt", 1, options);
   const List depth = readList(folder / "depth.txt", 1, options);
   const std::vector<double> rgb_times = timestampsOf(rgb.lines);

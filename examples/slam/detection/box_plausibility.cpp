@@ -10,13 +10,16 @@
 
 #include <fmt/format.h>
 
+#include "slam/detection/box_selection.hpp"
 #include "slam/detection/coco_classes.hpp"
 #include "support/time_stamps.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
-bool isInverted(const DetectionBox& box) { return box.x_max < box.x_min || box.y_max < box.y_min; }
+bool isInverted(const DetectionBox& box) {
+  return box.x_max <= box.x_min || box.y_max <= box.y_min;
+}
 
 bool isShare(const DetectionBox& box) {
   constexpr float kAtMost = 1.05f;  // detectors' boxes reach a little beyond the image
@@ -58,17 +61,28 @@ bool allFitAsSize(const std::vector<TimedBox>& boxes, cv::Size image) {
   });
 }
 
-bool allFitSwapped(const std::vector<TimedBox>& boxes, cv::Size image) {
-  return allFit(boxes, image, [image](const DetectionBox& box) {
-    return fits(box.x_max, box.y_max, box.x_min, box.y_min, image);
-  });
-}
-
-bool allFitAroundCentre(const std::vector<TimedBox>& boxes, cv::Size image) {
-  return allFit(boxes, image, [image](const DetectionBox& box) {
-    return fits(box.x_min - box.x_max / 2, box.y_min - box.y_max / 2, box.x_min + box.x_max / 2,
-                box.y_min + box.y_max / 2, image);
-  });
+/// In which other order of four numbers all boxes fit the image; empty where in none.
+std::string guessOfOrder(const std::vector<TimedBox>& boxes, cv::Size image) {
+  if (allFit(boxes, image, [image](const DetectionBox& box) {
+        return fits(box.x_max, box.y_max, box.x_min, box.y_min, image);
+      })) {
+    return "they look like corners in the order x_max y_max x_min y_min; swap them";
+  }
+  if (allFitAsSize(boxes, image)) {
+    return "they look like x y width height; write x_min y_min x_min + width y_min + height";
+  }
+  if (allFit(boxes, image, [image](const DetectionBox& box) {
+        return fits(box.x_min, box.x_max, box.y_min, box.y_max, image);
+      })) {
+    return "they look like x_min x_max y_min y_max; swap the second and the third";
+  }
+  if (allFit(boxes, image, [image](const DetectionBox& box) {
+        return fits(box.x_min - box.x_max / 2, box.y_min - box.y_max / 2, box.x_min + box.x_max / 2,
+                    box.y_min + box.y_max / 2, image);
+      })) {
+    return "they look like centre and size; write centre - size / 2 and centre + size / 2";
+  }
+  return {};
 }
 
 std::string guessOfContent(const std::vector<TimedBox>& boxes, const BoxCounts& counts,
@@ -79,14 +93,15 @@ std::string guessOfContent(const std::vector<TimedBox>& boxes, const BoxCounts& 
         counts.inverted > 0 ? ", perhaps centre and size as YOLO writes them" : "",
         image.area() > 0 ? fmt::format(", {} and {}", image.width, image.height) : "");
   }
-  if (allFitSwapped(boxes, image)) {
-    return "they look like corners in the order x_max y_max x_min y_min; swap them";
+  const bool are_points = std::all_of(boxes.begin(), boxes.end(), [](const TimedBox& timed) {
+    return timed.box.x_min == timed.box.x_max || timed.box.y_min == timed.box.y_max;
+  });
+  if (are_points) {
+    return "they have no area; is one corner written twice?";
   }
-  if (allFitAsSize(boxes, image)) {
-    return "they look like x y width height; write x_min y_min x_min + width y_min + height";
-  }
-  if (allFitAroundCentre(boxes, image)) {
-    return "they look like centre and size; write centre - size / 2 and centre + size / 2";
+  std::string order = guessOfOrder(boxes, image);
+  if (!order.empty()) {
+    return order;
   }
   return image.area() > 0 ? fmt::format("are they of images of another size than {} x {}?",
                                         image.width, image.height)
@@ -117,15 +132,15 @@ std::vector<TimedBox> withoutImpossible(const std::vector<TimedBox>& boxes, cv::
     }
   }
   constexpr std::size_t kOften = 5;  // of a fifth of the lines a slip is no explanation
-  const bool sizes =
-      kOften * counts.inverted >= boxes.size() && counts.inverted > 1 && allFitAsSize(boxes, image);
-  if (!boxes.empty() && (possible.empty() || sizes)) {
+  const bool in_other_order = kOften * counts.inverted >= boxes.size() && counts.inverted > 1 &&
+                              !guessOfOrder(boxes, image).empty();
+  if (!boxes.empty() && (possible.empty() || in_other_order)) {
     BoxCounts guessed = counts;
     guessed.inverted += inverted_shares;
     refuse(file,
            fmt::format("{} of {} lines are no boxes \"x_min y_min x_max y_max\" in pixels ({} with "
-                       "a maximum below its minimum, {} outside the image, {} within its first "
-                       "pixel); {}",
+                       "a maximum not above its minimum, {} outside the image, {} within its "
+                       "first pixel); {}",
                        boxes.size() - possible.size(), boxes.size(), counts.inverted,
                        counts.outside, counts.shares, guessOfContent(boxes, guessed, image)));
   }
@@ -155,7 +170,13 @@ std::vector<double> stampsOf(const std::vector<TimedBox>& boxes) {
 
 /// "; their time stamps step by 1: they look like frame numbers", or nothing.
 std::string guessOfStamps(const std::vector<TimedBox>& boxes) {
-  const std::string doubt = support::reviewStamps(stampsOf(boxes)).doubt;
+  const std::vector<double> stamps = stampsOf(boxes);
+  constexpr std::size_t kFew = 4;  // boxes that one image may well have
+  if (stamps.size() > kFew && std::count(stamps.begin(), stamps.end(), stamps.front()) ==
+                                  static_cast<std::ptrdiff_t>(stamps.size())) {
+    return "; all their time stamps are the same: were they rounded, as a float of 32 bits is?";
+  }
+  const std::string doubt = support::reviewStamps(stamps).doubt;
   return doubt.empty() ? "" : fmt::format("; their time stamps {}", doubt);
 }
 
@@ -172,10 +193,12 @@ void useClockOf(const FramesOfBoxes& frames, const std::filesystem::path& file,
   if (!seconds) {
     const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
     refuse(file,
-           fmt::format("no box is at a frame's time: the boxes cover {:.6f} to {:.6f}, the frames "
-                       "{:.6f} to {:.6f} s; are these another recording's, or another clock's?{}",
-                       *first, *last, frames.times.front(), frames.times.back(),
-                       guessOfStamps(boxes)));
+           fmt::format(
+               "no box is at a frame's time: the boxes cover {:.6f} to {:.6f}, the frames "
+               "{:.6f} to {:.6f} s; are these another recording's, or another clock's (if both "
+               "began together, they differ by {:.6f} s)?{}",
+               *first, *last, frames.times.front(), frames.times.back(),
+               frames.times.front() - *first, guessOfStamps(boxes)));
   }
   if (*seconds != 1.0) {
     review.notes.push_back(
@@ -243,6 +266,94 @@ void noteSwappedAxes(const std::vector<TimedBox>& boxes, cv::Size image,
   }
 }
 
+/// Median deviation from the median of what `value` gives of each box; not for none.
+template <class Value>
+float spreadOf(const std::vector<TimedBox>& boxes, const Value& value) {
+  std::vector<float> values;
+  values.reserve(boxes.size());
+  for (const TimedBox& timed : boxes) {
+    values.push_back(value(timed.box));
+  }
+  const auto middle = [](std::vector<float>& of) {
+    const auto at = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+    std::nth_element(of.begin(), at, of.end());
+    return *at;
+  };
+  const float median = middle(values);
+  for (float& deviation : values) {
+    deviation = std::abs(deviation - median);
+  }
+  return middle(values);
+}
+
+/// Where a person crosses the image the corners go along, and width and height stay.
+void noteSizes(const std::vector<TimedBox>& boxes, cv::Size image,
+               const std::filesystem::path& file, BoxReview& review) {
+  constexpr std::size_t kLeast = 10;  // boxes
+  constexpr float kMuchLess = 0.5f;   // of two corners that are found apart it is 0.7 or more
+  if (boxes.size() < kLeast || !allFitAsSize(boxes, image)) {
+    return;
+  }
+  const float of_last = spreadOf(boxes, [](const DetectionBox& box) { return box.x_max; }) +
+                        spreadOf(boxes, [](const DetectionBox& box) { return box.y_max; });
+  const float of_sides =
+      spreadOf(boxes, [](const DetectionBox& box) { return box.x_max - box.x_min; }) +
+      spreadOf(boxes, [](const DetectionBox& box) { return box.y_max - box.y_min; });
+  if (of_last < kMuchLess * of_sides) {
+    review.notes.push_back(fmt::format(
+        "{}: all boxes fit as x y width height, too, and their last two numbers stay while the "
+        "first two change; are they sizes? expected x_min y_min x_max y_max",
+        file.string()));
+  }
+}
+
+/// Boxes found in images of half the size.
+void noteUpperLeftQuarter(const std::vector<TimedBox>& boxes, cv::Size image,
+                          const std::filesystem::path& file, BoxReview& review) {
+  constexpr std::size_t kLeast = 20;  // boxes
+  if (boxes.size() < kLeast || image.area() == 0) {
+    return;
+  }
+  float right = 0.0f;
+  float bottom = 0.0f;
+  for (const TimedBox& timed : boxes) {
+    right = std::max(right, timed.box.x_max / static_cast<float>(image.width));
+    bottom = std::max(bottom, timed.box.y_max / static_cast<float>(image.height));
+  }
+  const auto reaches_half = [](float share) { return share > 0.4f && share < 0.52f; };
+  if (reaches_half(right) && reaches_half(bottom)) {
+    review.notes.push_back(fmt::format(
+        "{}: all {} boxes lie in the upper left quarter of the image of {} x {}, up to its middle; "
+        "are they of images of half the size?",
+        file.string(), boxes.size(), image.width, image.height));
+  }
+}
+
+/// Several boxes around one thing at one time: of several frames, or as before suppression.
+void noteCoinciding(const std::vector<TimedBox>& boxes, const std::filesystem::path& file,
+                    BoxReview& review) {
+  constexpr std::size_t kLeast = 5;      // boxes
+  constexpr std::size_t kCompared = 20;  // with those that follow
+  constexpr float kOneThing = 0.7f;      // intersection over union
+  std::size_t coinciding = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = i + 1;
+         j < boxes.size() && j <= i + kCompared && boxes[j].timestamp == boxes[i].timestamp; ++j) {
+      if (boxes[i].box.class_id == boxes[j].box.class_id &&
+          intersectionOverUnion(boxes[i].box, boxes[j].box) > kOneThing) {
+        ++coinciding;
+        break;
+      }
+    }
+  }
+  if (coinciding >= kLeast && 3 * coinciding > boxes.size()) {
+    review.notes.push_back(fmt::format(
+        "{}: {} of {} boxes nearly coincide with another of the same time stamp and class; were "
+        "the time stamps rounded, or the boxes written before suppression (NMS)?",
+        file.string(), coinciding, boxes.size()));
+  }
+}
+
 void noteWhatIsLeftOut(const std::vector<TimedBox>& boxes, const DetectorOptions& options,
                        const std::filesystem::path& file, BoxReview& review) {
   const BoxCounts& counts = review.counts;
@@ -253,7 +364,7 @@ void noteWhatIsLeftOut(const std::vector<TimedBox>& boxes, const DetectorOptions
     }
   };
   rule(counts.shares, "within the image's first pixel (shares of the image?)");
-  rule(counts.inverted, "with a maximum below its minimum");
+  rule(counts.inverted, "with a maximum not above its minimum");
   rule(counts.outside, "outside the image");
   rule(counts.other_class, "of classes that --classes does not ask for");
   rule(counts.low_score,
@@ -305,6 +416,9 @@ BoxReview reviewBoxes(const std::vector<TimedBox>& boxes, const DetectorOptions&
   }
   noteAnotherSize(counts, frames.image, file, review);
   noteSwappedAxes(possible, frames.image, file, review);
+  noteSizes(possible, frames.image, file, review);
+  noteUpperLeftQuarter(possible, frames.image, file, review);
+  noteCoinciding(possible, file, review);
   noteWhatIsLeftOut(boxes, options, file, review);
   return review;
 }

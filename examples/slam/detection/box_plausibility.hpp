@@ -23,7 +23,7 @@ struct TimedBox {
 struct BoxCounts {
   std::size_t in_file = 0;
   std::size_t shares = 0;       ///< All corners within the first pixel: shares of the image.
-  std::size_t inverted = 0;     ///< A maximum below its minimum.
+  std::size_t inverted = 0;     ///< A maximum not above its minimum.
   std::size_t outside = 0;      ///< Wholly outside the image.
   std::size_t other_class = 0;  ///< Of no class that is asked for.
   std::size_t low_score = 0;    ///< Below the threshold.
@@ -44,7 +44,7 @@ struct BoxReview {
 /// (DetectorOptions::frames) is not checked.
 /// @param file named in messages.
 /// @throws std::runtime_error with a guess of what the file holds where no line is plausible: none
-/// a box in the image, none at a frame's time; or many inverted, and all as x y width height good.
+/// a box in the image, none at a frame's time; or many inverted, and all good in another order.
 BoxReview reviewBoxes(const std::vector<TimedBox>& boxes, const DetectorOptions& options,
                       const std::filesystem::path& file);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -50,6 +51,18 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kDarknetS
     {"tvmonitor", "tv"},
 }};
 
+/// In lower case, without quotes and a colon around, blanks for '_' and '-'.
+std::string plainSpelling(const std::string& name) {
+  constexpr const char* kAround = "\"':";
+  const std::size_t begin = std::min(name.find_first_not_of(kAround), name.size());
+  const std::size_t end = name.find_last_not_of(kAround) + 1;
+  std::string plain = begin < end ? name.substr(begin, end - begin) : std::string();
+  std::transform(plain.begin(), plain.end(), plain.begin(), [](unsigned char c) {
+    return c == '_' || c == '-' ? ' ' : static_cast<char>(std::tolower(c));
+  });
+  return plain;
+}
+
 }  // namespace
 
 std::string cocoClassName(int class_id) {
@@ -61,8 +74,7 @@ std::string cocoClassName(int class_id) {
 }
 
 std::optional<int> findCocoClass(const std::string& name) {
-  std::string wanted = name;
-  std::replace(wanted.begin(), wanted.end(), '_', ' ');
+  std::string wanted = plainSpelling(name);
   for (const auto& [darknet, coco] : kDarknetSpellings) {
     if (wanted == darknet) {
       wanted = coco;

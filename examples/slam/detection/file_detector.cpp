@@ -15,6 +15,7 @@
 #include "slam/detection/box_selection.hpp"
 #include "slam/detection/coco_classes.hpp"
 #include "support/text_table.hpp"
+#include "support/time_stamps.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -30,9 +31,12 @@ std::string guessOfRow(const support::TextRow& row) {
   });
   if (!numbers) {
     double ignored = 0.0;
-    const bool has_class =
-        row.fields.size() + 1 == kLeastFields && support::parseNumber(row.fields.front(), ignored);
-    return has_class ? "; is the score missing? Write 1 behind each line" : "";
+    const auto isNumber = [&](const std::string& field) {
+      return support::parseNumber(field, ignored);
+    };
+    return row.fields.size() + 1 == kLeastFields && isNumber(row.fields.front())
+               ? "; is the score missing? Write 1 behind each line"
+               : "";
   }
   switch (row.fields.size()) {
     case 5:
@@ -42,7 +46,9 @@ std::string guessOfRow(const support::TextRow& row) {
              "score";
     case 6:
       return "; is the class missing (\"timestamp x y width height score\")? Write it behind the "
-             "time stamp, and corners in place of width and height";
+             "time stamp, and corners in place of width and height; or is this YOLO's \"class x y "
+             "width height score\" of one image? Then the time stamp is missing, too";
+    case 9:
     case 10:
       return "; is this the MOT challenge's \"frame id x y width height ...\"? Convert it";
     default:
@@ -74,12 +80,20 @@ TimedBox parseRow(const support::TextRow& row, const std::filesystem::path& file
                               "score\"{}",
                               row.fields.size(), guessOfRow(row)));
   }
+  double ignored = 0.0;
+  if (row.fields.size() == kLeastFields && support::parseNumber(row.fields[1], ignored) &&
+      !support::parseNumber(row.fields.back(), ignored) && findCocoClass(row.fields.back())) {
+    throw errorAt(file, row.line,
+                  fmt::format("the class, '{}', is behind the score; expected it behind the time "
+                              "stamp",
+                              support::printable(row.fields.back())));
+  }
   const std::size_t first = row.fields.size() - kNumbersBehindClass;
   const auto number = [&](std::size_t i, const char* what) {
     return static_cast<float>(parseFinite(row.fields[first + i], what, file, row.line));
   };
   TimedBox timed;
-  timed.timestamp = parseFinite(row.fields.front(), "timestamp", file, row.line);
+  timed.timestamp = support::parseStamp(row.fields.front(), "timestamp", file.string(), row.line);
   timed.box.class_id = parseClass(row, file);
   timed.box.x_min = number(0, "x_min");
   timed.box.y_min = number(1, "y_min");
@@ -94,6 +108,21 @@ TimedBox parseRow(const support::TextRow& row, const std::filesystem::path& file
                                   : ""));
   }
   return timed;
+}
+
+support::TextTable tableOf(const std::filesystem::path& file) {
+  return support::readTable(file, [](std::size_t fields) { return fields >= kLeastFields; });
+}
+
+std::vector<TimedBox> boxesOf(const support::TextTable& table, const std::filesystem::path& file) {
+  std::vector<TimedBox> boxes;
+  for (const support::TextRow& row : table.rows) {
+    boxes.push_back(parseRow(row, file));
+  }
+  std::stable_sort(boxes.begin(), boxes.end(), [](const TimedBox& left, const TimedBox& right) {
+    return left.timestamp < right.timestamp;
+  });
+  return boxes;
 }
 
 class FileDetector final : public ObjectDetector {
@@ -150,23 +179,21 @@ class FileDetector final : public ObjectDetector {
 }  // namespace
 
 std::vector<TimedBox> readBoxFile(const std::filesystem::path& file) {
-  std::vector<TimedBox> boxes;
-  const support::TextTable table =
-      support::readTable(file, [](std::size_t fields) { return fields >= kLeastFields; });
-  for (const support::TextRow& row : table.rows) {
-    boxes.push_back(parseRow(row, file));
-  }
-  std::stable_sort(boxes.begin(), boxes.end(), [](const TimedBox& left, const TimedBox& right) {
-    return left.timestamp < right.timestamp;
-  });
-  return boxes;
+  return boxesOf(tableOf(file), file);
+}
+
+BoxReview reviewBoxFile(const std::filesystem::path& file, const DetectorOptions& options) {
+  const support::TextTable table = tableOf(file);
+  BoxReview review = reviewBoxes(boxesOf(table, file), options, file);
+  review.notes.insert(review.notes.begin(), table.notes.begin(), table.notes.end());
+  return review;
 }
 
 std::unique_ptr<ObjectDetector> makeFileDetector(const DetectorOptions& options) {
   if (options.boxes.empty()) {
     throw std::invalid_argument("detector 'file': --boxes is not given; it needs --boxes FILE");
   }
-  BoxReview review = reviewBoxes(readBoxFile(options.boxes), options, options.boxes);
+  BoxReview review = reviewBoxFile(options.boxes, options);
   return std::make_unique<FileDetector>(std::move(review.kept), options);
 }
 

@@ -19,10 +19,14 @@ namespace hmcdyn::slam {
 /// @throws std::runtime_error with file and line where a line is malformed or has a NaN.
 std::vector<TimedBox> readBoxFile(const std::filesystem::path& file);
 
+/// What reviewBoxes() leaves of a file's boxes; what was assumed of its text is noted first.
+/// @throws std::runtime_error as readBoxFile() and reviewBoxes().
+BoxReview reviewBoxFile(const std::filesystem::path& file, const DetectorOptions& options);
+
 /// Gives the boxes that reviewBoxes() left of a file, of the nearest time stamp if it is within the
 /// tolerance, clipped to the image.
 /// @throws std::invalid_argument where the file is not given.
-/// @throws std::runtime_error as readBoxFile() and reviewBoxes().
+/// @throws std::runtime_error as reviewBoxFile().
 std::unique_ptr<ObjectDetector> makeFileDetector(const DetectorOptions& options);
 
 }  // namespace hmcdyn::slam

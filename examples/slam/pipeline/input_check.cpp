@@ -15,7 +15,7 @@ void checkBoxes(const DetectorOptions& detector, RunInput& input) {
   if (detector.type != "file" || detector.boxes.empty()) {
     return;
   }
-  const BoxReview review = reviewBoxes(readBoxFile(detector.boxes), detector, detector.boxes);
+  const BoxReview review = reviewBoxFile(detector.boxes, detector);
   input.boxes = review.counts;
   input.notes.insert(input.notes.end(), review.notes.begin(), review.notes.end());
 }

@@ -81,13 +81,18 @@ void RunCounts::add(double timestamp, const TrackingResult& tracked) {
 namespace {
 
 /// Which rule left out a file's boxes, or that the detector found none, or failed.
-std::string whyNoBox(const RunCounts& counts) {
+std::string whyNoBox(const RunCounts& counts, const DetectorOptions& detector) {
   const BoxCounts& boxes = counts.box_file;
   if (counts.detections.failed > 0 && counts.detections.detected == 0) {
     return "the detector failed at every frame";
   }
+  if (detector.type == "file" && boxes.in_file == 0) {
+    return fmt::format("{} holds no box", detector.boxes.string());
+  }
   if (boxes.in_file == 0 || boxes.kept > 0) {
-    return "the detector found no box in any frame";
+    return boxes.kept == 0
+               ? "the detector found no box in any frame"
+               : fmt::format("all {} boxes of the file are of other frames", boxes.kept);
   }
   return fmt::format(
       "of the {} boxes in the file {} are of other classes than --classes, {} have too low a "
@@ -143,8 +148,8 @@ std::vector<std::string> filterWarnings(const RunCounts& counts, const SlamOptio
   const bool has_masks = counts.motion_masks.count(toString(MaskState::kGood)) > 0;
   if (counts.frames_with_boxes == 0 && options.detector.type != "none") {
     warnings.push_back((has_masks ? "without a box, only the motion mask spoke: " : asked) +
-                       whyNoBox(counts));
-  } else if (counts.frames_with_boxes == 0 && !has_masks) {
+                       whyNoBox(counts, options.detector));
+  } else if (counts.frames_with_boxes == 0 && !has_masks && counts.frames_tracked > 0) {
     warnings.push_back(asked + "there is no detector (--detector none)");
   }
   if (counts.frames_with_boxes > 0 && counts.frames_with_distances == 0 &&

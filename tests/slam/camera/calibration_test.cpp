@@ -157,7 +157,7 @@ TEST_F(CalibrationFile, IsFoundByItsPath) {
   const std::filesystem::path file = folder.write("mine.yaml", kOwn);
   EXPECT_EQ(loadCamera(file.string()).pinhole.fx, 500.5);
   EXPECT_TRUE(mentions(messageOf<std::runtime_error>([&] { loadCamera(folder.path().string()); }),
-                       {folder.path().string(), "not a regular file"}));
+                       {folder.path().string(), "is a folder; expected a file"}));
 }
 
 TEST_F(CalibrationFile, OrbSlamsOldSpelling) {

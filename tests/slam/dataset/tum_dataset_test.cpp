@@ -123,7 +123,8 @@ TEST_F(TumDataset, AMissingFolderOrListIsNamed) {
   EXPECT_TRUE(mentions(listError(options), {"other.txt: no such file"}));
 
   options.associations = folder.path();
-  EXPECT_TRUE(mentions(listError(options), {folder.path().string(), "not a regular file"}));
+  EXPECT_TRUE(
+      mentions(listError(options), {folder.path().string(), "is a folder; expected a file"}));
 }
 
 TEST_F(TumDataset, AnEmptyListIsNamed) {
