@@ -522,6 +522,7 @@ class MaskEvidenceOptions:
     free_weight: float
     departure_weight: float
     mismatch_weight: float
+    named_mismatch_weight: float
     same_weight_young: float
     same_age: float
     drift: float
@@ -533,6 +534,7 @@ class MaskEvidenceOptions:
         free_weight: float = ...,
         departure_weight: float = ...,
         mismatch_weight: float = ...,
+        named_mismatch_weight: float = ...,
         same_weight_young: float = ...,
         same_age: float = ...,
         drift: float = ...,
