@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -55,6 +56,27 @@ TEST(MotionMask, WithoutAGrayImageDepthAloneFindsIt) {
   }
   EXPECT_GT(shareOf(label, MaskLabel::kMoving, last.truth()), 0.95);
   EXPECT_LT(shareOf(label, MaskLabel::kMoving, wallOf(last)), 0.01);
+}
+
+/// Belief at (u, v) of a static wall just when a part of it became brighter by 50 gray levels.
+float beliefInALight(const cv::Rect& lit, int u, int v) {
+  MotionMaskEstimator estimator(SlidingThing::kCamera);
+  float belief = 0.0f;
+  for (int k = 0; k <= 15; ++k) {
+    SlidingThing scene(k * kPeriod, 0.0, 5.0);  // the board is outside
+    if (k == 15) {
+      scene.frame().gray(lit) += cv::Scalar(50);
+    }
+    belief = estimator.update(scene.frame()).belief.at<float>(v, u);
+  }
+  return belief;
+}
+
+TEST(MotionMask, AnotherGrayLevelSpeaksForMotionOnlyWhereTheImagesAgreeElsewhere) {
+  // A patch of 8 % of the image may be something that came; a third of it is in another light (the
+  // mean rises by 18 of the 20 gray levels that make images incomparable)
+  EXPECT_GT(beliefInALight({60, 40, 40, 40}, 80, 60), 0.0f);
+  EXPECT_LT(beliefInALight({0, 0, 58, SlidingThing::kHeight}, 29, 60), 0.0f);
 }
 
 /// Share of a board called moving by depth alone, 0.3 s after it began to leave the image to the
