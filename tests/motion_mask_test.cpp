@@ -101,6 +101,27 @@ TEST(MotionMask, AThingWhoseTrailingEdgeAloneIsSeenIsFoundByThePlaceItLeft) {
   EXPECT_EQ(movingShareOfWhatLeaves(0.0f), 0.0);
 }
 
+/// Share of a board called moving that came at 0.5 m/s and drifts on by 0.1 m/s: by 4 % of its
+/// width in fresh_age.
+double movingShareOfWhatDrifts(float min_fresh_on) {
+  MotionMaskOptions options;
+  options.segment.min_fresh_on = min_fresh_on;
+  MotionMaskEstimator estimator(SlidingThing::kCamera, options);
+  double share = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    const double t = k * kPeriod;
+    const SlidingThing scene(t, 0.0, boardAt(t, 1.2) + 0.1 * std::max(0.0, t - 1.2));
+    const MotionMask& mask = estimator.update(scene.frame());
+    share = shareOf(mask.label, MaskLabel::kMoving, scene.truth());
+  }
+  return share;
+}
+
+TEST(MotionMask, WhatMovesAndBecomesSlowGoesOnMoving) {
+  EXPECT_GT(movingShareOfWhatDrifts(0.02f), 0.9);
+  EXPECT_EQ(movingShareOfWhatDrifts(MaskSegmentOptions{}.min_fresh), 0.0);
+}
+
 TEST(MotionMask, AThingKeepsItsNumberAndHasItsVelocityInTheWorld) {
   // Given a camera that moves the other way
   MotionMaskEstimator estimator(SlidingThing::kCamera);

@@ -69,6 +69,8 @@ struct MaskSegmentOptions {
   float min_area = 0.003f;   ///< Smaller things (share of the image) are noise.
   /// A thing moves when so many of its pixels were not there a tenth of a second ago ...
   float min_fresh = 0.06f;
+  /// ... or so many, if it moved in the frame before, since what drifts would flicker ...
+  float min_fresh_on = 0.02f;
   double fresh_age = 0.2;  ///< ... by frames of at most this age (s).
   /// What a box holds is of the room only when it was there so long ago (s), too: people who have
   /// just come into view, or just start to walk, are not.

@@ -595,6 +595,7 @@ class MaskSegmentOptions:
     seed_belief: float
     min_area: float
     min_fresh: float
+    min_fresh_on: float
     fresh_age: float
     proof_age: float
     box_depth: float
@@ -607,6 +608,7 @@ class MaskSegmentOptions:
         seed_belief: float = ...,
         min_area: float = ...,
         min_fresh: float = ...,
+        min_fresh_on: float = ...,
         fresh_age: float = ...,
         proof_age: float = ...,
         box_depth: float = ...,

@@ -54,6 +54,8 @@ void checkSegment(const MaskSegmentOptions& o) {
                     o.seed_belief, "at least belief, below 1");
   requireMaskOption(isShare(o.min_area), "segment.min_area", o.min_area, "0..1");
   requireMaskOption(isShare(o.min_fresh), "segment.min_fresh", o.min_fresh, "0..1");
+  requireMaskOption(isShare(o.min_fresh_on) && o.min_fresh_on <= o.min_fresh,
+                    "segment.min_fresh_on", o.min_fresh_on, "0..min_fresh");
   requireMaskOption(isPositive(o.fresh_age), "segment.fresh_age", o.fresh_age, "above 0 (s)");
   requireMaskOption(isPositive(o.box_depth), "segment.box_depth", o.box_depth, "above 0 (m)");
 }

@@ -102,7 +102,14 @@ MaskReason reasonOf(const Votes& votes, std::size_t pixels) {
   return votes.mismatch * kTenth >= pixels ? MaskReason::kGray : MaskReason::kMemory;
 }
 
-MaskInstance describe(const ThingsInput& in, const std::uint32_t* begin, const std::uint32_t* end) {
+/// What moved in the frame before moves on by a smaller share: what drifts slowly would flicker.
+bool doesMove(const Votes& votes, bool moved, const MaskSegmentOptions& options) {
+  const float least = moved ? options.min_fresh_on : options.min_fresh;
+  return static_cast<float>(votes.fresh) > least * static_cast<float>(votes.seen);
+}
+
+MaskInstance describe(const ThingsInput& in, const Votes& votes, const std::uint32_t* begin,
+                      const std::uint32_t* end) {
   const auto width = static_cast<std::uint32_t>(in.frame.width);
   int left = in.frame.width;
   int right = 0;
@@ -116,12 +123,9 @@ MaskInstance describe(const ThingsInput& in, const std::uint32_t* begin, const s
   const int top = static_cast<int>(*rows.first / width);
   const int bottom = static_cast<int>(*rows.second / width);
   const auto pixels = static_cast<std::size_t>(end - begin);
-  const Votes votes = votesOf(in, begin, end);
   MaskInstance thing;
   thing.box = cv::Rect(left * in.reduction, top * in.reduction, (right + 1 - left) * in.reduction,
                        (bottom + 1 - top) * in.reduction);
-  thing.moves = static_cast<float>(votes.fresh) >
-                in.options.segment.min_fresh * static_cast<float>(votes.seen);
   thing.area = static_cast<float>(pixels) / static_cast<float>(in.frame.size());
   thing.depth = static_cast<float>(depth / static_cast<double>(pixels));
   thing.decided_by = reasonOf(votes, pixels);
@@ -176,6 +180,12 @@ int earlierNumber(const ThingsInput& in, const std::uint32_t* begin, const std::
 std::vector<MaskInstance> findThings(const ThingsInput& in, int& next_number, ThingsWorkspace& w,
                                      std::vector<MaskInstance> reuse) {
   std::vector<MaskInstance> things = std::move(reuse);
+  w.moved.clear();
+  for (const MaskInstance& thing : things) {
+    if (thing.moves) {
+      w.moved.push_back(thing.number);
+    }
+  }
   things.clear();
   w.label.assign(in.frame.size(), static_cast<std::uint8_t>(MaskLabel::kStatic));
   w.taken.clear();
@@ -191,13 +201,16 @@ std::vector<MaskInstance> findThings(const ThingsInput& in, int& next_number, Th
   for (const std::uint32_t k : w.order) {  // the largest chooses its number first
     const std::uint32_t* begin = w.pixels.data() + w.first[k];
     const std::uint32_t* end = w.pixels.data() + w.first[k + 1];
-    MaskInstance thing = describe(in, begin, end);
+    const Votes votes = votesOf(in, begin, end);
+    MaskInstance thing = describe(in, votes, begin, end);
     thing.number = earlierNumber(in, begin, end, w.taken);
     if (thing.number == 0) {
       thing.number = next_number;
       next_number = next_number < kMostNumbers ? next_number + 1 : 1;
     }
     w.taken.push_back(thing.number);
+    const bool moved = std::find(w.moved.begin(), w.moved.end(), thing.number) != w.moved.end();
+    thing.moves = doesMove(votes, moved, in.options.segment);
     for (const auto* pixel = begin; pixel != end; ++pixel) {
       w.label[*pixel] =
           static_cast<std::uint8_t>(thing.moves ? MaskLabel::kMoving : MaskLabel::kStanding);

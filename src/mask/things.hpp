@@ -25,6 +25,7 @@ struct ThingsWorkspace {
   std::vector<std::int16_t> component;  ///< Of each pixel; -1 = none.
   std::vector<std::uint8_t> label;      ///< MaskLabel of each pixel.
   std::vector<int> taken;               ///< Numbers in use in this frame.
+  std::vector<int> moved;               ///< Numbers of what moved in the frame before.
   std::vector<std::uint32_t> order;
 };
 
