@@ -33,6 +33,9 @@ PaperValue parseRow(const std::string& text, const std::filesystem::path& file, 
   if (fields.size() != 5) {
     fail(file, line, fmt::format("expected 5 fields, found {}", fields.size()));
   }
+  if (std::any_of(fields.begin(), fields.end(), [](const auto& field) { return field.empty(); })) {
+    fail(file, line, fmt::format("a field of '{}' is empty; expected {}", text, kHeader));
+  }
   double value = 0.0;
   const char* const end = fields[4].data() + fields[4].size();
   const auto [rest, error] = std::from_chars(fields[4].data(), end, value);

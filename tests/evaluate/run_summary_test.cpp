@@ -145,6 +145,8 @@ TEST_F(PaperResults, MalformedLinesAreNamed) {
               HasSubstr("paper.csv:2: expected 5 fields, found 4"));
   EXPECT_THAT(errorOf(header + "\nI,CROWD,RS,ate_rmse,0.1x\n"),
               HasSubstr("paper.csv:3: '0.1x' is no number"));
+  EXPECT_THAT(errorOf(header + "I,CROWD,RS,,0.1\n"),
+              HasSubstr("paper.csv:2: a field of 'I,CROWD,RS,,0.1' is empty; expected table,"));
   EXPECT_THAT(errorOf("I,CROWD,RS,ate_rmse,0.1\n"), HasSubstr("paper.csv:1: expected the header"));
   EXPECT_THAT(errorOf(""), HasSubstr("expected the header"));
 }
