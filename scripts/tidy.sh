@@ -132,7 +132,8 @@ export VERSION
 flags() {
   local folder line
   folder=$(dirname "${1/#$ROOT\/include\/hmcdyn/$ROOT\/src}")
-  line=$(grep -h -m 1 -F -- " -c $1\"" "$BUILD/compile_commands.json" "$UNITED/compile_commands.json" 2>/dev/null)
+  line=$(grep -h -m 1 -F -- " -c $1\"" "$BUILD/compile_commands.json" "$UNITED/compile_commands.json" 2>/dev/null |
+    head -n 1) # a source that is in no unit is in both
   while [[ -z $line && $folder == "$ROOT"/* ]]; do
     line=$(grep -m 1 -F -- " -c $folder/" "$BUILD/compile_commands.json")
     folder=$(dirname "$folder")
