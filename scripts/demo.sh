@@ -11,8 +11,8 @@ Usage: ${0##*/} [--scene NAME] [--frames N] [--output DIR] [--no-install]
 Renders a sequence with people who walk, tracks the camera with --filter none and --filter robust, and
 compares both with the exact truth.
 
-  --scene NAME    scene to render (default: walking_xyz; hmcdyn_synthesize --list names all)
-  --frames N      its length (default: 150, which is 5 s)
+  --scene NAME    scene to render (default: crowd; hmcdyn_synthesize --list names all)
+  --frames N      its length (default: 120, which is 4 s)
   --output DIR    where the results go (default: build/demo)
   --no-install    do not look for missing packages
   --help          this text
@@ -25,8 +25,8 @@ usage_error() {
   exit 2
 }
 
-scene=walking_xyz
-frames=150
+scene=crowd
+frames=120
 output=
 install=true
 while (($# > 0)); do
