@@ -192,11 +192,11 @@ def insert(source, target, names, scale, seed):
         origin = middle[0].T @ (pose[1] - middle[1])
         rays = sensor.rays @ turn.T
         share = (time - first) / (last - first)
-        ahead = 0.5 / (last - first)  # a quarter of a second to either side shows the speed
+        step = 0.025 / (last - first)  # 25 ms to either side show the speed
         for thing in things:
             along, normal, brightness = thing.cast(origin, rays, thing.centre(share))
             colour, depth, seen = sensor.add(colour, depth, along, normal, brightness, thing.colour)
-            speed = np.linalg.norm(thing.centre(share + ahead / 20) - thing.centre(share - ahead / 20)) / 0.05
+            speed = np.linalg.norm(thing.centre(share + step) - thing.centre(share - step)) / 0.05
             mask[seen] = 255 if speed > SPEED_OF_REST else 0
         cv2.imwrite(str(target / f"rgb/{stamp}.png"), np.clip(colour, 0, 255).astype(np.uint8))
         cv2.imwrite(str(target / f"depth/{partner[0]}.png"), np.round(depth * sensor.factor).astype(np.uint16))
