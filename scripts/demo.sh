@@ -65,6 +65,7 @@ echo "== Rendering $scene, $frames frames"
 
 for filter in none robust; do
   echo "== Tracking with --filter $filter"
+  rm -rf "$output/$filter/frames" # those of an earlier demo, which may have been longer
   "$bin/hmcdyn_slam" --dataset "$sequence" --camera "$sequence/calibration.yaml" \
     --detector file --boxes "$sequence/boxes.txt" --filter "$filter" --annotate --write-keypoints \
     --output "$output/$filter"
