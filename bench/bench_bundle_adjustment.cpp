@@ -2,8 +2,8 @@
 // Bundle adjustment of a local and a global map, with the reduced system dense and sparse.
 #include <benchmark/benchmark.h>
 
-#include "bundle_scene.hpp"
-#include "slam/optimization/bundle_adjustment.hpp"
+#include "map/bundle_scene.hpp"
+#include "slam/map/bundle_adjustment.hpp"
 
 namespace hmcdyn::slam {
 namespace {

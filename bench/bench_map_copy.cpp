@@ -6,8 +6,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "mapping/map_tour.hpp"
-#include "slam/mapping/map_snapshot.hpp"
+#include "loop/map_tour.hpp"
+#include "slam/loop/map_snapshot.hpp"
 
 namespace hmcdyn::slam {
 namespace {

@@ -19,8 +19,8 @@
 
 // Images, boxes and the error's computation; a system has its own.
 #include "evaluate/absolute_trajectory_error.hpp"
-#include "slam/dataset/frame.hpp"
-#include "slam/detection/detector_factory.hpp"
+#include "slam/detect/detector_factory.hpp"
+#include "slam/input/dataset/frame.hpp"
 
 namespace {
 

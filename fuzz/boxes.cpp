@@ -4,8 +4,8 @@
 #include <string>
 
 #include "fuzz_input.hpp"
-#include "slam/detection/box_plausibility.hpp"
-#include "slam/detection/file_detector.hpp"
+#include "slam/detect/box_plausibility.hpp"
+#include "slam/detect/file_detector.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const hmcdyn::fuzz::ScratchFolder folder;

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "fuzz_input.hpp"
-#include "slam/camera/calibration_file.hpp"
-#include "slam/camera/plausibility.hpp"
+#include "slam/input/camera/calibration_file.hpp"
+#include "slam/input/camera/plausibility.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const hmcdyn::fuzz::ScratchFolder folder;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fuzz_input.hpp"
-#include "slam/dataset/tum_dataset.hpp"
+#include "slam/input/dataset/tum_dataset.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const hmcdyn::fuzz::ScratchFolder folder;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The geometry of eq. 9 and the manifold: hand-computed rows, derivatives against differences.
+// The geometry of eq. 9: hand-computed rows, derivatives against differences.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -8,7 +8,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <ceres/gradient_checker.h>
 #include <gtest/gtest.h>
 
 #include <hmcdyn/pose_refinement.hpp>
@@ -16,13 +15,14 @@
 #include "pose/residual.hpp"
 #include "pose/solver.hpp"
 #include "pose_scene.hpp"
+#include "se3.hpp"
 
 namespace hmcdyn::detail {
 namespace {
 
+using se3::Vector6d;
 using test::gaussian3;
 using test::moved;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // fx 500, fy 400, centre (320, 240), bf 40; the point (1, -0.5, 2) in the camera's frame projects
 // to (570, 140), depth 2, right column 570 - 40 / 2 = 550.
@@ -124,70 +124,23 @@ TEST_P(PointJacobian, AgreesWithCentralDifferences) {
   }
 }
 
-#ifdef HMCDYN_CERES_HAS_MANIFOLD
-TEST_P(PointJacobian, PassesTheGradientChecker) {
-  // Its result holds Eigen matrices that libceres allocates and this file frees: with
-  // AddressSanitizer or AVX, Eigen here would free what Eigen there allocated in another way.
-  if (EIGEN_MALLOC_ALREADY_ALIGNED == 0) {
-    GTEST_SKIP() << "Eigen's allocation differs from the one that Ceres was built with";
-  }
+TEST_P(PointJacobian, TheCostHasItInItsFirstSixColumns) {
   const ProjectionModel model = handModel(GetParam());
   std::mt19937 random(4);
-  const PoseManifold manifold;
-  const std::vector<const ceres::Manifold*> manifolds{&manifold};
-  ceres::NumericDiffOptions differences;
-  // Its first steps are 32 times this; Ceres' 1e-2 leaves the range where the series converges.
-  differences.ridders_relative_initial_step_size = 1e-4;
-  for (int repetition = 0; repetition < 20; ++repetition) {
-    const JacobianCase one = randomCase(random, model);
-    const PointCost cost(one.point, model);
-    const ceres::GradientChecker checker(&cost, &manifolds, differences);
-    const PoseVector pose = toPoseVector(one.pose);
-    const std::array<const double*, 1> parameters{pose.data()};
-    ceres::GradientChecker::ProbeResults results;
-    checker.Probe(parameters.data(), 1e-7, &results);
-    // Not Probe's verdict, which takes a rounding error beside an exact 0 for a relative error
-    // of 1.
-    ASSERT_TRUE(results.return_value) << results.error_log;
-    EXPECT_TRUE(results.local_jacobians[0].isApprox(results.local_numeric_jacobians[0], 1e-9))
-        << results.error_log;
-  }
-}
-
-TEST(PoseManifold, MinusUndoesPlusAndTheJacobiansAreInverse) {
-  std::mt19937 random(5);
-  const PoseManifold manifold;
-  for (const double size : {0.0, 1e-9, 1e-3, 0.5}) {
-    const PoseVector x = toPoseVector(
-        moved(Eigen::Isometry3d::Identity(), gaussian3(random, 1.0), gaussian3(random, 2.0)));
-    Vector6d delta;
-    delta << gaussian3(random, size), gaussian3(random, size);
-    PoseVector y;
-    Vector6d back;
-    ASSERT_TRUE(manifold.Plus(x.data(), delta.data(), y.data()));
-    ASSERT_TRUE(manifold.Minus(y.data(), x.data(), back.data()));
-    EXPECT_LT((back - delta).norm(), 1e-14 + 1e-12 * size);
-
-    Eigen::Matrix<double, kPoseSize, 6, Eigen::RowMajor> plus;
-    Eigen::Matrix<double, 6, kPoseSize, Eigen::RowMajor> minus;
-    ASSERT_TRUE(manifold.PlusJacobian(x.data(), plus.data()));
-    ASSERT_TRUE(manifold.MinusJacobian(x.data(), minus.data()));
-    EXPECT_TRUE((minus * plus).isIdentity(1e-12));
-  }
-}
-#endif
-
-TEST(PoseManifold, PlusIsAMotionInTheCameraFrame) {
-  std::mt19937 random(6);
-  const Eigen::Isometry3d pose =
-      moved(Eigen::Isometry3d::Identity(), gaussian3(random, 1.0), gaussian3(random, 2.0));
-  Vector6d delta;
-  delta << 0.1, -0.2, 0.3, 0.4, -0.5, 0.6;
-  const PoseVector x = toPoseVector(pose);
-  PoseVector y;
-  ASSERT_TRUE(PoseManifold().Plus(x.data(), delta.data(), y.data()));
-  const Eigen::Isometry3d expected = moved(pose, delta.head<3>(), delta.tail<3>());
-  EXPECT_TRUE(toIsometry(y).isApprox(expected, 1e-12));
+  const JacobianCase one = randomCase(random, model);
+  const auto expected = pointResidual(one.point, model, one.pose.linear(), one.pose.translation());
+  const se3::PoseVector pose = se3::toPoseVector(one.pose);
+  const std::array<const double*, 1> parameters{pose.data()};
+  Eigen::VectorXd residuals(one.point.rows);
+  Eigen::Matrix<double, Eigen::Dynamic, se3::kPoseSize, Eigen::RowMajor> by_pose(one.point.rows,
+                                                                                 se3::kPoseSize);
+  std::array<double*, 1> jacobians{by_pose.data()};
+  ASSERT_TRUE(expected);
+  ASSERT_TRUE(
+      PointCost(one.point, model).Evaluate(parameters.data(), residuals.data(), jacobians.data()));
+  EXPECT_TRUE(residuals.isApprox(expected->residual.head(one.point.rows), 1e-9));
+  EXPECT_TRUE(by_pose.leftCols<6>().isApprox(expected->jacobian.topRows(one.point.rows), 1e-9));
+  EXPECT_TRUE(by_pose.col(6).isZero(0.0));
 }
 
 // lambda^2 of the loss, in closed form: Huber below and above its threshold, and the switch, whose

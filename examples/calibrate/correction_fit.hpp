@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "calibrate/depth_samples.hpp"
-#include "slam/camera/depth_correction.hpp"
+#include "slam/input/camera/depth_correction.hpp"
 
 namespace hmcdyn::calibrate {
 

@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "evaluate/trajectory.hpp"
-#include "slam/camera/calibration.hpp"
-#include "slam/camera/rectifier.hpp"
-#include "slam/dataset/file_io.hpp"
-#include "slam/dataset/frame.hpp"
-#include "slam/dataset/recording.hpp"
+#include "slam/input/camera/calibration.hpp"
+#include "slam/input/camera/rectifier.hpp"
+#include "slam/input/dataset/file_io.hpp"
+#include "slam/input/dataset/frame.hpp"
+#include "slam/input/dataset/recording.hpp"
 #include "support/text_table.hpp"
 
 namespace hmcdyn::calibrate {

@@ -9,7 +9,7 @@
 #include "calibrate/depth_to_color.hpp"
 #include "calibrate/error_statistics.hpp"
 #include "calibrate/triangulation.hpp"
-#include "slam/camera/depth_error_file.hpp"
+#include "slam/input/camera/depth_error_file.hpp"
 
 namespace hmcdyn::calibrate {
 

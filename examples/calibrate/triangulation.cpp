@@ -11,7 +11,7 @@
 
 #include "evaluate/alignment.hpp"
 #include "evaluate/statistics.hpp"
-#include "slam/optimization/bundle_adjustment.hpp"
+#include "slam/map/bundle_adjustment.hpp"
 
 namespace hmcdyn::calibrate {
 namespace {

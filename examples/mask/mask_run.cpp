@@ -13,13 +13,13 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "slam/camera/rectifier.hpp"
-#include "slam/dataset/frame.hpp"
-#include "slam/dataset/recording.hpp"
-#include "slam/detection/box_plausibility.hpp"
-#include "slam/detection/file_detector.hpp"
+#include "slam/detect/box_plausibility.hpp"
+#include "slam/detect/file_detector.hpp"
+#include "slam/input/camera/rectifier.hpp"
+#include "slam/input/dataset/frame.hpp"
+#include "slam/input/dataset/recording.hpp"
+#include "slam/input/source/folder_source.hpp"
 #include "slam/output/mask_files.hpp"
-#include "slam/source/folder_source.hpp"
 
 namespace hmcdyn::masking {
 namespace {

@@ -9,11 +9,11 @@
 #include <hmcdyn/motion_mask.hpp>
 
 #include "mask/mask_run.hpp"
-#include "slam/camera/rectifier.hpp"
-#include "slam/dataset/frame.hpp"
-#include "slam/dataset/recording.hpp"
-#include "slam/detection/mask_folder.hpp"
-#include "slam/source/folder_source.hpp"
+#include "slam/detect/mask_folder.hpp"
+#include "slam/input/camera/rectifier.hpp"
+#include "slam/input/dataset/frame.hpp"
+#include "slam/input/dataset/recording.hpp"
+#include "slam/input/source/folder_source.hpp"
 
 namespace hmcdyn::occupancy {
 namespace {

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "se3.hpp"
+
 namespace hmcdyn::internal {
 
 std::vector<const RememberedFrame*> FrameHistory::earlierThan(double timestamp) const {
@@ -111,11 +113,7 @@ std::optional<Eigen::Isometry3d> FrameHistory::predict(double timestamp) const {
   const RememberedFrame& before = frames_[frames_.size() - 2];
   const double ratio = (timestamp - last.timestamp) / (last.timestamp - before.timestamp);
   const Eigen::Isometry3d step = *last.camera_from_world * before.camera_from_world->inverse();
-  const Eigen::AngleAxisd turn(step.linear());
-  Eigen::Isometry3d on = Eigen::Isometry3d::Identity();
-  on.linear() = Eigen::AngleAxisd(ratio * turn.angle(), turn.axis()).toRotationMatrix();
-  on.translation() = ratio * step.translation();
-  return on * *last.camera_from_world;
+  return se3::motionOf(ratio * se3::stepOf(step)) * *last.camera_from_world;
 }
 
 std::vector<EarlierFrame> earlierFrames(const std::vector<const RememberedFrame*>& frames,

@@ -8,6 +8,7 @@
 
 #include "pose/descent.hpp"
 #include "pose/input.hpp"
+#include "se3.hpp"
 
 namespace hmcdyn::detail {
 
@@ -174,7 +175,7 @@ void CollapsedPoseProblem::setActive(std::size_t i, bool active) {
 
 std::size_t CollapsedPoseProblem::start(const Eigen::Isometry3d& pose) {
   // With the first round's losses, which then begins with this linearisation.
-  current_.pose = toPoseVector(pose);
+  current_.pose = se3::toPoseVector(pose);
   current_variant_ = variant(options_.plain_rounds < options_.rounds);
   points_.linearise(current_, current_variant_);
   current_is_valid_ = true;

@@ -15,12 +15,13 @@
 #include "pose/problem.hpp"
 #include "pose/residual.hpp"
 #include "pose/solver.hpp"
+#include "se3.hpp"
 
 namespace hmcdyn::detail {
 
 /// A pose and what one pass over the points found there.
 struct Linearisation {
-  PoseVector pose = PoseVector::Zero();
+  se3::PoseVector pose = se3::PoseVector::Zero();
   CollapsedSystem system;
   std::vector<double> squared_residuals;  ///< As collapse() leaves them.
 };
@@ -43,7 +44,7 @@ class CollapsedPoseProblem final : public PoseProblem {
   std::size_t notFinite() const override { return not_finite_; }
   std::size_t start(const Eigen::Isometry3d& pose) override;
   SolverOutcome solve(bool robust) override;
-  Eigen::Isometry3d pose() const override { return toIsometry(current_.pose); }
+  Eigen::Isometry3d pose() const override { return se3::toIsometry(current_.pose); }
   Eigen::Matrix<double, 6, 6> information() const override { return current_.system.normal; }
   InlierTest testInliers() override;
   void activateInliers() override;

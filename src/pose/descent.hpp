@@ -24,6 +24,7 @@
 #include "pose/cholesky6.hpp"
 #include "pose/collapsed.hpp"
 #include "pose/square_root.hpp"
+#include "se3.hpp"
 
 namespace hmcdyn::detail {
 
@@ -88,7 +89,7 @@ class DescentFunction {
     if (d.stop != nullptr) {
       return Eigen::Matrix<double, 7, 1>::Zero();
     }
-    d.candidate->pose = moved(d.current->pose, steps - d.current_steps);
+    d.candidate->pose = se3::moved(d.current->pose, steps - d.current_steps);
     d.points->linearise(*d.candidate, d.variant);
     ++d.iterations;
     const double cost = d.current->system.cost;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One round of the pose refinement in Ceres: the manifold, the cost function, the losses.
+// One round of the pose refinement in Ceres: the cost function, the losses.
 #pragma once
 
 #include <cstdint>
@@ -11,60 +11,15 @@
 #include <Eigen/Geometry>
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
-#include <ceres/version.h>
 
 #include <hmcdyn/pose_refinement.hpp>
 
 #include "pose/problem.hpp"
 #include "pose/residual.hpp"
 
-// The one place that knows which of Ceres' interfaces there is: Manifold came with 2.1,
-// LocalParameterization left with 2.2.
-#if CERES_VERSION_MAJOR > 2 || (CERES_VERSION_MAJOR == 2 && CERES_VERSION_MINOR >= 1)
-#define HMCDYN_CERES_HAS_MANIFOLD
-#include <ceres/manifold.h>
-#else
-#include <ceres/local_parameterization.h>
-#endif
-
 namespace hmcdyn::detail {
 
-/// A pose as Ceres holds it: camera_from_world as (qx, qy, qz, qw, tx, ty, tz).
-constexpr int kPoseSize = 7;
-using PoseVector = Eigen::Matrix<double, kPoseSize, 1>;
-
-PoseVector toPoseVector(const Eigen::Isometry3d& pose);
-Eigen::Isometry3d toIsometry(const PoseVector& pose);
-
-#ifdef HMCDYN_CERES_HAS_MANIFOLD
-using PoseManifoldBase = ceres::Manifold;
-#else
-using PoseManifoldBase = ceres::LocalParameterization;
-#endif
-
-/// A step of a pose: delta = (omega, v) moves (R, t) to (Exp(omega) R, Exp(omega) t + v), a motion
-/// in the camera's frame. The world's frame does not enter, so that the same problem told in
-/// another world frame takes the same steps.
-PoseVector moved(const PoseVector& pose, const Eigen::Matrix<double, 6, 1>& delta);
-
-/// These steps for Ceres.
-class PoseManifold final : public PoseManifoldBase {
- public:
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
-#ifdef HMCDYN_CERES_HAS_MANIFOLD
-  int AmbientSize() const override { return kPoseSize; }
-  int TangentSize() const override { return 6; }
-  bool PlusJacobian(const double* x, double* jacobian) const override;
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
-  bool MinusJacobian(const double* x, double* jacobian) const override;
-#else
-  int GlobalSize() const override { return kPoseSize; }
-  int LocalSize() const override { return 6; }
-  bool ComputeJacobian(const double* x, double* jacobian) const override;
-#endif
-};
-
-/// Eq. 9 of one point, without its weight: the weight belongs to the loss.
+/// Eq. 9 of one point, without its weight: the weight belongs to the loss. Goes with se3::Manifold.
 class PointCost final : public ceres::CostFunction {
  public:
   PointCost(const PointMeasurement& measurement, const ProjectionModel& model);

@@ -7,11 +7,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "se3.hpp"
+
 namespace hmcdyn::internal {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using se3::Matrix6d;
+using se3::Vector6d;
 
 /// A point in the current camera's frame, and where it was seen in the earlier image.
 struct Sighting {
@@ -46,24 +48,13 @@ std::vector<Sighting> someOf(const std::vector<Sighting>& all) {
   return some;
 }
 
-Eigen::Isometry3d exponential(const Vector6& step) {
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3d axis = step.head<3>();
-  const double angle = axis.norm();
-  if (angle > 0.0) {
-    motion.linear() = Eigen::AngleAxisd(angle, axis / angle).toRotationMatrix();
-  }
-  motion.translation() = step.tail<3>();
-  return motion;
-}
-
 constexpr double kNearest = 0.05;  // m: nearer, or behind the camera, nothing is seen
 
 /// One Gauss-Newton step of the motion that takes points into the earlier camera's frame.
-Vector6 stepOf(const PinholeCamera& camera, const std::vector<Sighting>& sightings,
-               const Eigen::Isometry3d& earlier_from_current, double scale) {
-  Matrix6 information = Matrix6::Zero();
-  Vector6 gradient = Vector6::Zero();
+Vector6d stepOf(const PinholeCamera& camera, const std::vector<Sighting>& sightings,
+                const Eigen::Isometry3d& earlier_from_current, double scale) {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
   for (const Sighting& sighting : sightings) {
     const Eigen::Vector3d p = earlier_from_current * sighting.point;
     if (p.z() < kNearest) {
@@ -106,11 +97,11 @@ std::optional<CameraMotion> fitCameraMotion(const PinholeCamera& camera,
   constexpr double kNarrowing = 0.7;
   constexpr double kConverged = 1e-6;  // rad, m
   for (int k = 0; k < kMostSteps; ++k) {
-    const Vector6 step = stepOf(camera, some, earlier_from_current, scale);
+    const Vector6d step = stepOf(camera, some, earlier_from_current, scale);
     if (!step.allFinite()) {
       return std::nullopt;
     }
-    earlier_from_current = exponential(step) * earlier_from_current;
+    earlier_from_current = se3::motionOf(step) * earlier_from_current;
     if (scale <= finest && step.norm() < kConverged) {
       break;
     }

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "fault_input.hpp"
-#include "slam/detection/box_plausibility.hpp"
-#include "slam/detection/coco_classes.hpp"
-#include "slam/detection/file_detector.hpp"
+#include "slam/detect/box_plausibility.hpp"
+#include "slam/detect/coco_classes.hpp"
+#include "slam/detect/file_detector.hpp"
 
 namespace hmcdyn::faults {
 namespace {

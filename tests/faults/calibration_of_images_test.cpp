@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "fault_input.hpp"
-#include "slam/camera/plausibility.hpp"
-#include "slam/pipeline/input_check.hpp"
+#include "slam/input/camera/plausibility.hpp"
+#include "slam/run/input_check.hpp"
 
 namespace hmcdyn::faults {
 namespace {

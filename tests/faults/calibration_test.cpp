@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "fault_input.hpp"
-#include "slam/camera/calibration_file.hpp"
-#include "slam/camera/plausibility.hpp"
+#include "slam/input/camera/calibration_file.hpp"
+#include "slam/input/camera/plausibility.hpp"
 
 namespace hmcdyn::faults {
 namespace {

@@ -12,8 +12,8 @@
 #include "evaluate/pose_convention.hpp"
 #include "evaluate/trajectory.hpp"
 #include "fault_input.hpp"
-#include "slam/dataset/tum_dataset.hpp"
-#include "slam/detection/file_detector.hpp"
+#include "slam/detect/file_detector.hpp"
+#include "slam/input/dataset/tum_dataset.hpp"
 #include "support/text_table.hpp"
 
 namespace hmcdyn::faults {

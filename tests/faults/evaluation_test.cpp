@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "fault_input.hpp"
-#include "slam/pipeline/input_check.hpp"
-#include "slam/pipeline/run.hpp"
+#include "slam/run/input_check.hpp"
+#include "slam/run/run.hpp"
 
 namespace hmcdyn::faults {
 namespace {

@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "dataset/temporary_folder.hpp"
 #include "file_content.hpp"
-#include "pipeline/toy_sequence.hpp"
-#include "slam/pipeline/options.hpp"
+#include "input/dataset/temporary_folder.hpp"
+#include "run/toy_sequence.hpp"
+#include "slam/run/options.hpp"
 
 namespace hmcdyn::faults {
 

@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "detection/tiny_models.hpp"
+#include "detect/tiny_models.hpp"
 #include "fault_input.hpp"
-#include "slam/detection/detector_factory.hpp"
-#include "slam/detection/yolo_heads.hpp"
+#include "slam/detect/detector_factory.hpp"
+#include "slam/detect/yolo_heads.hpp"
 
 namespace hmcdyn::faults {
 namespace {

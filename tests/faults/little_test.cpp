@@ -8,9 +8,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "fault_input.hpp"
-#include "slam/pipeline/run.hpp"
-#include "slam/pipeline/summary.hpp"
-#include "slam/source/folder_source.hpp"
+#include "slam/input/source/folder_source.hpp"
+#include "slam/run/run.hpp"
+#include "slam/run/summary.hpp"
 
 namespace hmcdyn::faults {
 namespace {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "fault_input.hpp"
-#include "slam/dataset/tum_dataset.hpp"
-#include "slam/source/folder_source.hpp"
+#include "slam/input/dataset/tum_dataset.hpp"
+#include "slam/input/source/folder_source.hpp"
 
 namespace hmcdyn::faults {
 namespace {

@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "fault_input.hpp"
-#include "pipeline/shell.hpp"
+#include "run/shell.hpp"
 
 namespace hmcdyn::faults {
 namespace {

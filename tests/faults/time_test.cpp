@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "fault_input.hpp"
-#include "slam/dataset/tum_dataset.hpp"
-#include "slam/source/realtime_pacer.hpp"
-#include "source/fake_recording.hpp"
+#include "input/source/fake_recording.hpp"
+#include "slam/input/dataset/tum_dataset.hpp"
+#include "slam/input/source/realtime_pacer.hpp"
 #include "support/time_stamps.hpp"
 
 namespace hmcdyn::faults {

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "slam/features/hamming_distance.hpp"
-#include "slam/optimization/optimization_input.hpp"
+#include "slam/map/optimization_input.hpp"
 
 namespace hmcdyn::slam {
 

@@ -9,12 +9,13 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "slam/optimization/optimization_input.hpp"
+#include "se3.hpp"
+#include "slam/map/optimization_input.hpp"
 
 namespace hmcdyn::slam {
 namespace {
 
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using se3::Matrix6d;
 
 [[noreturn]] void refuse(const std::string& what, const std::string& id,
                          const std::string& expected) {

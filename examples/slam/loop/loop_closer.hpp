@@ -14,8 +14,8 @@
 #include <hmcdyn/types.hpp>
 
 #include "slam/loop/loop_detector.hpp"
-#include "slam/optimization/bundle_adjustment.hpp"
-#include "slam/optimization/pose_graph.hpp"
+#include "slam/loop/pose_graph.hpp"
+#include "slam/map/bundle_adjustment.hpp"
 
 namespace hmcdyn::slam {
 

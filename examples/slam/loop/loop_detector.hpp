@@ -15,7 +15,7 @@
 
 #include "slam/loop/loop_key_frame.hpp"
 #include "slam/loop/loop_verification.hpp"
-#include "slam/place/place_index.hpp"
+#include "slam/loop/place_index.hpp"
 
 namespace hmcdyn::slam {
 

@@ -10,7 +10,7 @@
 
 #include "slam/loop/coverage.hpp"
 #include "slam/loop/pixel_grid.hpp"
-#include "slam/optimization/optimization_input.hpp"
+#include "slam/map/optimization_input.hpp"
 
 namespace hmcdyn::slam {
 namespace {

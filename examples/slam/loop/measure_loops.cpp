@@ -18,14 +18,14 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "evaluate/trajectory.hpp"
-#include "slam/camera/calibration_file.hpp"
-#include "slam/dataset/frame.hpp"
-#include "slam/dataset/tum_dataset.hpp"
+#include "slam/features/frame.hpp"
 #include "slam/features/orb_extractor.hpp"
+#include "slam/input/camera/calibration_file.hpp"
+#include "slam/input/dataset/frame.hpp"
+#include "slam/input/dataset/tum_dataset.hpp"
 #include "slam/loop/loop_verification.hpp"
+#include "slam/loop/place_index.hpp"
 #include "slam/loop/relocalizer.hpp"
-#include "slam/place/place_index.hpp"
-#include "slam/tracking/frame.hpp"
 
 namespace hmcdyn::slam {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <hmcdyn/pose_refinement.hpp>
 
-#include "slam/optimization/optimization_input.hpp"
+#include "slam/map/optimization_input.hpp"
 
 namespace hmcdyn::slam {
 namespace {

@@ -14,8 +14,8 @@
 #include "slam/loop/coverage.hpp"
 #include "slam/loop/descriptor_matcher.hpp"
 #include "slam/loop/loop_key_frame.hpp"
+#include "slam/loop/place_index.hpp"
 #include "slam/loop/rigid_ransac.hpp"
-#include "slam/place/place_index.hpp"
 
 namespace hmcdyn::slam {
 

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "slam/optimization/optimization_input.hpp"
+#include "slam/map/optimization_input.hpp"
 
 namespace hmcdyn::slam {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <hmcdyn/motion_mask.hpp>
 
-#include "slam/dataset/frame.hpp"
+#include "slam/input/dataset/frame.hpp"
 #include "slam/output/append_file.hpp"
 
 namespace hmcdyn::slam {

@@ -92,16 +92,16 @@ TimingsWriter::TimingsWriter(const std::filesystem::path& file, std::vector<std:
   file_.append(header + "\n");
 }
 
-void TimingsWriter::write(double timestamp, const StageTimes& times) {
-  for (const StageTime& time : times.stages()) {
+void TimingsWriter::write(double timestamp, const support::StageTimes& times) {
+  for (const support::StageTime& time : times.stages()) {
     if (std::find(stages_.begin(), stages_.end(), time.stage) == stages_.end()) {
       throw std::invalid_argument("timings: stage \"" + time.stage + "\" has no column");
     }
   }
   std::string row = fmt::format("{:.6f}", timestamp);
-  for (const auto value : {&StageTime::wall_ms, &StageTime::cpu_ms}) {
+  for (const auto value : {&support::StageTime::wall_ms, &support::StageTime::cpu_ms}) {
     for (const std::string& stage : stages_) {
-      const StageTime* time = times.find(stage);
+      const support::StageTime* time = times.find(stage);
       row += "," + (time == nullptr ? "nan" : number(time->*value, 4));
     }
   }

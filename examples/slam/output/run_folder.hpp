@@ -14,7 +14,7 @@
 
 #include "slam/output/append_file.hpp"
 #include "slam/output/map_files.hpp"
-#include "slam/output/stage_times.hpp"
+#include "support/stage_times.hpp"
 
 namespace hmcdyn::slam {
 
@@ -48,7 +48,7 @@ class TimingsWriter {
   TimingsWriter(const std::filesystem::path& file, std::vector<std::string> stages);
 
   /// @throws std::invalid_argument for a stage that has no column.
-  void write(double timestamp, const StageTimes& times);
+  void write(double timestamp, const support::StageTimes& times);
 
  private:
   std::vector<std::string> stages_;

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/features2d.hpp>
 
-#include "texture.hpp"
+#include "features/texture.hpp"
 
 namespace hmcdyn::slam {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "texture.hpp"
+#include "features/texture.hpp"
 
 namespace hmcdyn::slam {
 namespace {

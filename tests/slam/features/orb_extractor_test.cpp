@@ -12,9 +12,9 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "features/texture.hpp"
 #include "shared_data.hpp"
 #include "slam/features/hamming_distance.hpp"
-#include "texture.hpp"
 
 namespace hmcdyn::slam {
 namespace {

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 
 #include "file_content.hpp"
-#include "slam/dataset/temporary_folder.hpp"
+#include "slam/input/dataset/temporary_folder.hpp"
 
 namespace hmcdyn::slam {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "slam/dataset/temporary_folder.hpp"
+#include "slam/input/dataset/temporary_folder.hpp"
 
 namespace hmcdyn::slam {
 namespace {

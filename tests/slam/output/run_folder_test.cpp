@@ -177,11 +177,11 @@ TEST_F(RunFolderTest, TrajectoryRefusesWhatIsNotFinite) {
 
 TEST_F(RunFolderTest, TimingsHaveAColumnAStage) {
   TimingsWriter writer(file("timings.csv"), {"features", "track"});
-  StageTimes all;
+  support::StageTimes all;
   all.add({"track", 2.5, 1.25});  // in another order than the columns
   all.add({"features", 5.0, 4.5});
   writer.write(1.5, all);
-  StageTimes some;
+  support::StageTimes some;
   some.add({"features", 6.0, 5.5});
   writer.write(2.5, some);
   EXPECT_EQ(linesOf(file("timings.csv")),
@@ -192,7 +192,7 @@ TEST_F(RunFolderTest, TimingsHaveAColumnAStage) {
 
 TEST_F(RunFolderTest, TimingsRefuseUnknownAndUnusableStages) {
   TimingsWriter writer(file("timings.csv"), {"track"});
-  StageTimes times;
+  support::StageTimes times;
   times.add({"loop", 1.0, 1.0});
   EXPECT_EQ(messageOf<std::invalid_argument>([&] { writer.write(1.0, times); }),
             "timings: stage \"loop\" has no column");

@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "slam/detect/box_plausibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "slam/detect/box_selection.hpp"
+#include "slam/detect/coco_classes.hpp"
+#include "support/time_stamps.hpp"
+
+namespace hmcdyn::slam {
+namespace {
+
+bool isInverted(const DetectionBox& box) {
+  return box.x_max <= box.x_min || box.y_max <= box.y_min;
+}
+
+bool isShare(const DetectionBox& box) {
+  constexpr float kAtMost = 1.05f;  // detectors' boxes reach a little beyond the image
+  const auto within = [](float value) { return value >= 1.0f - kAtMost && value <= kAtMost; };
+  return within(box.x_min) && within(box.y_min) && within(box.x_max) && within(box.y_max);
+}
+
+bool isOutside(const DetectionBox& box, cv::Size image) {
+  return image.area() > 0 &&
+         (box.x_max < 0.0f || box.y_max < 0.0f || box.x_min > static_cast<float>(image.width - 1) ||
+          box.y_min > static_cast<float>(image.height - 1));
+}
+
+/// Reaches farther beyond the right or the lower border than detectors' boxes do.
+bool isBeyond(const DetectionBox& box, cv::Size image) {
+  constexpr float kAtMost = 1.05f;  // image sides
+  return image.area() > 0 && (box.x_max > kAtMost * static_cast<float>(image.width) ||
+                              box.y_max > kAtMost * static_cast<float>(image.height));
+}
+
+/// Whether corners lie in the image, give or take 2 % of it.
+bool fits(float x_min, float y_min, float x_max, float y_max, cv::Size image) {
+  const float across = 0.02f * static_cast<float>(image.width);
+  const float down = 0.02f * static_cast<float>(image.height);
+  return x_min <= x_max && y_min <= y_max && x_min >= -across && y_min >= -down &&
+         x_max <= static_cast<float>(image.width) + across &&
+         y_max <= static_cast<float>(image.height) + down;
+}
+
+template <class Fits>
+bool allFit(const std::vector<TimedBox>& boxes, cv::Size image, const Fits& asIf) {
+  return image.area() > 0 && std::all_of(boxes.begin(), boxes.end(),
+                                         [&](const TimedBox& timed) { return asIf(timed.box); });
+}
+
+bool allFitAsSize(const std::vector<TimedBox>& boxes, cv::Size image) {
+  return allFit(boxes, image, [image](const DetectionBox& box) {
+    return fits(box.x_min, box.y_min, box.x_min + box.x_max, box.y_min + box.y_max, image);
+  });
+}
+
+/// In which other order of four numbers all boxes fit the image; empty where in none.
+std::string guessOfOrder(const std::vector<TimedBox>& boxes, cv::Size image) {
+  if (allFit(boxes, image, [image](const DetectionBox& box) {
+        return fits(box.x_max, box.y_max, box.x_min, box.y_min, image);
+      })) {
+    return "they look like corners in the order x_max y_max x_min y_min; swap them";
+  }
+  if (allFitAsSize(boxes, image)) {
+    return "they look like x y width height; write x_min y_min x_min + width y_min + height";
+  }
+  if (allFit(boxes, image, [image](const DetectionBox& box) {
+        return fits(box.x_min, box.x_max, box.y_min, box.y_max, image);
+      })) {
+    return "they look like x_min x_max y_min y_max; swap the second and the third";
+  }
+  if (allFit(boxes, image, [image](const DetectionBox& box) {
+        return fits(box.x_min - box.x_max / 2, box.y_min - box.y_max / 2, box.x_min + box.x_max / 2,
+                    box.y_min + box.y_max / 2, image);
+      })) {
+    return "they look like centre and size; write centre - size / 2 and centre + size / 2";
+  }
+  return {};
+}
+
+std::string guessOfContent(const std::vector<TimedBox>& boxes, const BoxCounts& counts,
+                           cv::Size image) {
+  if (2 * counts.shares > counts.in_file) {
+    return fmt::format(
+        "they look like shares of the image (0..1){}; multiply them by its sides{}",
+        counts.inverted > 0 ? ", perhaps centre and size as YOLO writes them" : "",
+        image.area() > 0 ? fmt::format(", {} and {}", image.width, image.height) : "");
+  }
+  const bool are_points = std::all_of(boxes.begin(), boxes.end(), [](const TimedBox& timed) {
+    return timed.box.x_min == timed.box.x_max || timed.box.y_min == timed.box.y_max;
+  });
+  if (are_points) {
+    return "they have no area; is one corner written twice?";
+  }
+  std::string order = guessOfOrder(boxes, image);
+  if (!order.empty()) {
+    return order;
+  }
+  return image.area() > 0 ? fmt::format("are they of images of another size than {} x {}?",
+                                        image.width, image.height)
+                          : "are they x y width height?";
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+  throw std::runtime_error(fmt::format("{}: {}", file.string(), what));
+}
+
+/// Counts and sorts out what is no box in the image.
+std::vector<TimedBox> withoutImpossible(const std::vector<TimedBox>& boxes, cv::Size image,
+                                        const std::filesystem::path& file, BoxCounts& counts) {
+  std::vector<TimedBox> possible;
+  std::size_t inverted_shares = 0;
+  for (const TimedBox& timed : boxes) {
+    const bool inverted = isInverted(timed.box);
+    if (isShare(timed.box)) {
+      ++counts.shares;
+      inverted_shares += inverted ? 1 : 0;
+    } else if (inverted) {
+      ++counts.inverted;
+    } else if (isOutside(timed.box, image)) {
+      ++counts.outside;
+    } else {
+      counts.beyond += isBeyond(timed.box, image) ? 1 : 0;
+      possible.push_back(timed);
+    }
+  }
+  constexpr std::size_t kOften = 5;  // of a fifth of the lines a slip is no explanation
+  const bool in_other_order = kOften * counts.inverted >= boxes.size() && counts.inverted > 1 &&
+                              !guessOfOrder(boxes, image).empty();
+  if (!boxes.empty() && (possible.empty() || in_other_order)) {
+    BoxCounts guessed = counts;
+    guessed.inverted += inverted_shares;
+    refuse(file,
+           fmt::format("{} of {} lines are no boxes \"x_min y_min x_max y_max\" in pixels ({} with "
+                       "a maximum not above its minimum, {} outside the image, {} within its "
+                       "first pixel); {}",
+                       boxes.size() - possible.size(), boxes.size(), counts.inverted,
+                       counts.outside, counts.shares, guessOfContent(boxes, guessed, image)));
+  }
+  return possible;
+}
+
+double distanceTo(const std::vector<double>& times, double time) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto after = std::lower_bound(times.begin(), times.end(), time);
+  if (after != times.end()) {
+    least = *after - time;
+  }
+  if (after != times.begin()) {
+    least = std::min(least, time - *std::prev(after));
+  }
+  return least;
+}
+
+std::vector<double> stampsOf(const std::vector<TimedBox>& boxes) {
+  std::vector<double> stamps;
+  stamps.reserve(boxes.size());
+  for (const TimedBox& timed : boxes) {
+    stamps.push_back(timed.timestamp);
+  }
+  return stamps;
+}
+
+/// "; their time stamps step by 1: they look like frame numbers", or nothing.
+std::string guessOfStamps(const std::vector<TimedBox>& boxes) {
+  const std::vector<double> stamps = stampsOf(boxes);
+  constexpr std::size_t kFew = 4;  // boxes that one image may well have
+  if (stamps.size() > kFew && std::count(stamps.begin(), stamps.end(), stamps.front()) ==
+                                  static_cast<std::ptrdiff_t>(stamps.size())) {
+    return "; all their time stamps are the same: were they rounded, as a float of 32 bits is?";
+  }
+  const std::string doubt = support::reviewStamps(stamps).doubt;
+  return doubt.empty() ? "" : fmt::format("; their time stamps {}", doubt);
+}
+
+/// Makes seconds of the stamps, by the unit in which they fit the frames.
+void useClockOf(const FramesOfBoxes& frames, const std::filesystem::path& file,
+                std::vector<TimedBox>& boxes, BoxReview& review) {
+  if (frames.times.empty() || boxes.empty()) {
+    return;
+  }
+  const std::vector<double> stamps = stampsOf(boxes);
+  constexpr double kSlack = 1.0;  // s; a detector may have seen what comes before the list
+  const std::optional<double> seconds = support::secondsByOverlap(
+      stamps, frames.times.front(), frames.times.back(), frames.unit_seconds, kSlack);
+  if (!seconds) {
+    const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
+    refuse(file,
+           fmt::format(
+               "no box is at a frame's time: the boxes cover {:.6f} to {:.6f}, the frames "
+               "{:.6f} to {:.6f} s; are these another recording's, or another clock's (if both "
+               "began together, they differ by {:.6f} s)?{}",
+               *first, *last, frames.times.front(), frames.times.back(),
+               frames.times.front() - *first, guessOfStamps(boxes)));
+  }
+  if (*seconds != 1.0) {
+    review.notes.push_back(
+        fmt::format("{}: a time stamp of 1 is read as {:g} s, since that fits the frames",
+                    file.string(), *seconds));
+  }
+  for (TimedBox& timed : boxes) {
+    timed.timestamp *= *seconds;
+  }
+}
+
+bool isWanted(const DetectionBox& box, const DetectorOptions& options) {
+  return options.classes.empty() || std::find(options.classes.begin(), options.classes.end(),
+                                              box.class_id) != options.classes.end();
+}
+
+std::string classesIn(const std::vector<TimedBox>& boxes) {
+  std::set<int> ids;
+  for (const TimedBox& timed : boxes) {
+    ids.insert(timed.box.class_id);
+  }
+  std::vector<std::string> names;
+  for (const int id : ids) {
+    names.push_back(fmt::format("{} ({})", id, cocoClassName(id)));
+    constexpr std::size_t kNamed = 5;
+    if (names.size() == kNamed) {
+      names.emplace_back("...");
+      break;
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Boxes of a larger image lie partly in a smaller one.
+void noteAnotherSize(const BoxCounts& counts, cv::Size image, const std::filesystem::path& file,
+                     BoxReview& review) {
+  if (2 * (counts.beyond + counts.outside) > counts.in_file) {
+    review.notes.push_back(fmt::format(
+        "{}: {} of {} boxes reach beyond the image of {} x {}; are they of images of another size?",
+        file.string(), counts.beyond + counts.outside, counts.in_file, image.width, image.height));
+  }
+}
+
+/// Corners with y first mostly lie in the image, too, but people in them lie down.
+void noteSwappedAxes(const std::vector<TimedBox>& boxes, cv::Size image,
+                     const std::filesystem::path& file, BoxReview& review) {
+  const bool fit_with_y_first = allFit(boxes, image, [image](const DetectionBox& box) {
+    return fits(box.y_min, box.x_min, box.y_max, box.x_max, image);
+  });
+  constexpr std::size_t kLeast = 5;  // boxes
+  constexpr float kLying = 1.5f;     // width to height
+  std::size_t people = 0;
+  std::size_t lying = 0;
+  for (const TimedBox& timed : boxes) {
+    const DetectionBox& box = timed.box;
+    people += box.class_id == kPersonClassId ? 1 : 0;
+    const bool wide = box.x_max - box.x_min > kLying * (box.y_max - box.y_min);
+    lying += box.class_id == kPersonClassId && wide ? 1 : 0;
+  }
+  if (fit_with_y_first && people >= kLeast && 2 * lying > people) {
+    review.notes.push_back(fmt::format(
+        "{}: {} of the {} boxes of people are more than {:g} times as wide as high; are their "
+        "corners in the order y_min x_min y_max x_max? expected x first",
+        file.string(), lying, people, kLying));
+  }
+}
+
+/// Median deviation from the median of what `value` gives of each box; not for none.
+template <class Value>
+float spreadOf(const std::vector<TimedBox>& boxes, const Value& value) {
+  std::vector<float> values;
+  values.reserve(boxes.size());
+  for (const TimedBox& timed : boxes) {
+    values.push_back(value(timed.box));
+  }
+  const auto middle = [](std::vector<float>& of) {
+    const auto at = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+    std::nth_element(of.begin(), at, of.end());
+    return *at;
+  };
+  const float median = middle(values);
+  for (float& deviation : values) {
+    deviation = std::abs(deviation - median);
+  }
+  return middle(values);
+}
+
+/// Where a person crosses the image the corners go along, and width and height stay.
+void noteSizes(const std::vector<TimedBox>& boxes, cv::Size image,
+               const std::filesystem::path& file, BoxReview& review) {
+  constexpr std::size_t kLeast = 10;  // boxes
+  constexpr float kMuchLess = 0.5f;   // of two corners that are found apart it is 0.7 or more
+  if (boxes.size() < kLeast || !allFitAsSize(boxes, image)) {
+    return;
+  }
+  const float of_last = spreadOf(boxes, [](const DetectionBox& box) { return box.x_max; }) +
+                        spreadOf(boxes, [](const DetectionBox& box) { return box.y_max; });
+  const float of_sides =
+      spreadOf(boxes, [](const DetectionBox& box) { return box.x_max - box.x_min; }) +
+      spreadOf(boxes, [](const DetectionBox& box) { return box.y_max - box.y_min; });
+  if (of_last < kMuchLess * of_sides) {
+    review.notes.push_back(fmt::format(
+        "{}: all boxes fit as x y width height, too, and their last two numbers stay while the "
+        "first two change; are they sizes? expected x_min y_min x_max y_max",
+        file.string()));
+  }
+}
+
+/// Boxes found in images of half the size.
+void noteUpperLeftQuarter(const std::vector<TimedBox>& boxes, cv::Size image,
+                          const std::filesystem::path& file, BoxReview& review) {
+  constexpr std::size_t kLeast = 20;  // boxes
+  if (boxes.size() < kLeast || image.area() == 0) {
+    return;
+  }
+  float right = 0.0f;
+  float bottom = 0.0f;
+  for (const TimedBox& timed : boxes) {
+    right = std::max(right, timed.box.x_max / static_cast<float>(image.width));
+    bottom = std::max(bottom, timed.box.y_max / static_cast<float>(image.height));
+  }
+  const auto reaches_half = [](float share) { return share > 0.4f && share < 0.52f; };
+  if (reaches_half(right) && reaches_half(bottom)) {
+    review.notes.push_back(fmt::format(
+        "{}: all {} boxes lie in the upper left quarter of the image of {} x {}, up to its middle; "
+        "are they of images of half the size?",
+        file.string(), boxes.size(), image.width, image.height));
+  }
+}
+
+/// Several boxes around one thing at one time: of several frames, or as before suppression.
+void noteCoinciding(const std::vector<TimedBox>& boxes, const std::filesystem::path& file,
+                    BoxReview& review) {
+  constexpr std::size_t kLeast = 5;      // boxes
+  constexpr std::size_t kCompared = 20;  // with those that follow
+  constexpr float kOneThing = 0.7f;      // intersection over union
+  std::size_t coinciding = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = i + 1;
+         j < boxes.size() && j <= i + kCompared && boxes[j].timestamp == boxes[i].timestamp; ++j) {
+      if (boxes[i].box.class_id == boxes[j].box.class_id &&
+          intersectionOverUnion(boxes[i].box, boxes[j].box) > kOneThing) {
+        ++coinciding;
+        break;
+      }
+    }
+  }
+  if (coinciding >= kLeast && 3 * coinciding > boxes.size()) {
+    review.notes.push_back(fmt::format(
+        "{}: {} of {} boxes nearly coincide with another of the same time stamp and class; were "
+        "the time stamps rounded, or the boxes written before suppression (NMS)?",
+        file.string(), coinciding, boxes.size()));
+  }
+}
+
+void noteWhatIsLeftOut(const std::vector<TimedBox>& boxes, const DetectorOptions& options,
+                       const std::filesystem::path& file, BoxReview& review) {
+  const BoxCounts& counts = review.counts;
+  std::vector<std::string> rules;
+  const auto rule = [&](std::size_t count, const std::string& why) {
+    if (count > 0) {
+      rules.push_back(fmt::format("{} {}", count, why));
+    }
+  };
+  rule(counts.shares, "within the image's first pixel (shares of the image?)");
+  rule(counts.inverted, "with a maximum not above its minimum");
+  rule(counts.outside, "outside the image");
+  rule(counts.other_class, "of classes that --classes does not ask for");
+  rule(counts.low_score,
+       fmt::format("with a score below --score-threshold {:g}", options.score_threshold));
+  rule(counts.other_time,
+       fmt::format("without a frame within {:g} s of their time stamp{}", options.time_tolerance,
+                   2 * counts.other_time > counts.in_file ? guessOfStamps(boxes) : ""));
+  const std::size_t odd = counts.shares + counts.inverted + counts.outside + counts.other_time;
+  const bool notable = odd > 0 || (counts.kept == 0 && counts.in_file > 0);
+  if (notable) {
+    review.notes.push_back(
+        fmt::format("{}: {} of {} boxes are left out: {}{}", file.string(),
+                    counts.in_file - counts.kept, counts.in_file, fmt::join(rules, ", "),
+                    counts.kept == 0 && counts.other_class > 0
+                        ? fmt::format("; the file has the classes {}", classesIn(boxes))
+                        : ""));
+  }
+}
+
+}  // namespace
+
+BoxReview reviewBoxes(const std::vector<TimedBox>& boxes, const DetectorOptions& options,
+                      const std::filesystem::path& file) {
+  BoxReview review;
+  BoxCounts& counts = review.counts;
+  counts.in_file = boxes.size();
+  const FramesOfBoxes& frames = options.frames;
+  std::vector<TimedBox> possible = withoutImpossible(boxes, frames.image, file, counts);
+  useClockOf(frames, file, possible, review);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const TimedBox& timed : possible) {
+    const double distance = frames.times.empty() ? 0.0 : distanceTo(frames.times, timed.timestamp);
+    nearest = std::min(nearest, distance);
+    if (!isWanted(timed.box, options)) {
+      ++counts.other_class;
+    } else if (timed.box.score < options.score_threshold) {
+      ++counts.low_score;
+    } else if (!(distance <= options.time_tolerance)) {
+      ++counts.other_time;
+    } else {
+      review.kept.push_back(timed);
+    }
+  }
+  counts.kept = review.kept.size();
+  if (!possible.empty() && nearest > options.time_tolerance) {
+    refuse(file, fmt::format("no box is within {:g} s of a frame, the nearest is {:.6f} s away; "
+                             "are the time stamps those of the colour images?",
+                             options.time_tolerance, nearest));
+  }
+  noteAnotherSize(counts, frames.image, file, review);
+  noteSwappedAxes(possible, frames.image, file, review);
+  noteSizes(possible, frames.image, file, review);
+  noteUpperLeftQuarter(possible, frames.image, file, review);
+  noteCoinciding(possible, file, review);
+  noteWhatIsLeftOut(boxes, options, file, review);
+  return review;
+}
+
+}  // namespace hmcdyn::slam
