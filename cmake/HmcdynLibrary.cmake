@@ -81,10 +81,12 @@ if(HMCDYN_WITH_VISION)
     src/mask/departure.cpp src/mask/depth_history.cpp src/mask/evidence.cpp
     src/mask/motion_mask.cpp src/mask/named.cpp src/mask/options.cpp src/mask/small_frame.cpp
     src/mask/smoothing.cpp src/mask/thing_motion.cpp src/mask/things.cpp src/mask/whole_mask.cpp
-    src/frame_filter/frame_camera.cpp src/frame_filter/dynamic_feature_filter.cpp
-    src/frame_filter/box_carrier.cpp src/frame_filter/decision.cpp src/frame_filter/features.cpp
-    src/frame_filter/frame_filter.cpp src/frame_filter/history.cpp src/frame_filter/input.cpp
-    src/frame_filter/mask_verdict.cpp src/frame_filter/options.cpp)
+    src/frame_filter/box_carrier.cpp src/frame_filter/comparison.cpp
+    src/frame_filter/decision.cpp src/frame_filter/dynamic_feature_filter.cpp
+    src/frame_filter/features.cpp src/frame_filter/filter_steps.cpp
+    src/frame_filter/frame_camera.cpp src/frame_filter/frame_filter.cpp
+    src/frame_filter/history.cpp src/frame_filter/input.cpp src/frame_filter/mask_verdict.cpp
+    src/frame_filter/memory.cpp src/frame_filter/options.cpp)
   target_include_directories(hmcdyn_vision PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_link_libraries(
     hmcdyn_vision

@@ -161,17 +161,6 @@ DynamicFeatureFilterResult filterDynamicFeatures(const DynamicFeatureFilterInput
                                                  const DynamicFeatureFilterOptions& options,
                                                  DynamicFeatureFilterWorkspace& workspace);
 
-/// The last step alone, for a result whose regions are neither boxes nor a mask: the points vote on
-/// each other. A result without beliefs (use_belief, another rule, no depth image) stays as it is.
-/// @param result of filterDynamicFeatures() for this input; its `stage` may have been made anew.
-/// @param in_region N flags: the point belongs to something that may move.
-/// @throws std::invalid_argument as updateMotionBelief() and applyMotionBelief().
-DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,
-                                         const DynamicFeatureFilterInput& input,
-                                         Span<const std::uint8_t> in_region,
-                                         const DynamicFeatureFilterOptions& options,
-                                         DynamicFeatureFilterWorkspace& workspace);
-
 /// The smallest call: two gray images (8-bit, one size), key points and boxes.
 /// @throws std::invalid_argument as above, and for images that are not 8-bit gray.
 DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,

@@ -145,7 +145,7 @@ def test_every_function_is_there_or_left_out_on_purpose():
         "intersectionOverUnion", "mergeDoubles", "clipToImage",  # of boxes
         "depthError", "depthNoise", "relativeDepthError", "systematicDepthError", "hasDepth", "compact",
         "depthSimilarity", "keptPointWeight", "epipolarDistance", "epipolarLine",  # of one point; Python has arrays
-        "judgeByBelief", "knownMotion", "backgroundSuffices", "buildFlowPyramid",  # within the calls of a frame
+        "knownMotion", "backgroundSuffices", "buildFlowPyramid",  # within the calls of a frame
         "filterRuleFromString", "toString",  # an enumeration takes and has names
         "checkBelief", "checkKeyPoints", "checkModel", "checkOptions", "checkPointPairs",  # each call checks
     }

@@ -69,6 +69,17 @@ FrameFilterResult decide(DynamicFeatureFilterResult details, std::vector<MaskLab
   return result;
 }
 
+FrameFilterStatus statusOf(const DynamicFeatureFilterResult& details, FilterRule rule,
+                           bool is_first) {
+  if (is_first && rule != FilterRule::kNone) {
+    return FrameFilterStatus::kNoHistory;
+  }
+  if (details.earlier.empty()) {
+    return FrameFilterStatus::kNothingToDo;
+  }
+  return details.camera_unknown ? FrameFilterStatus::kCameraUnknown : FrameFilterStatus::kFiltered;
+}
+
 void dropRegions(Span<const std::uint8_t> in_region, FrameFilterResult& result) {
   for (std::size_t i = 0; i < in_region.size(); ++i) {
     if (in_region[i] != 0) {

@@ -16,6 +16,10 @@ namespace hmcdyn::internal {
 FrameFilterResult decide(DynamicFeatureFilterResult details, std::vector<MaskLabel> seen,
                          Span<const std::uint8_t> in_region, const FrameFilterOptions& options);
 
+/// @param is_first there is no earlier frame to compare with.
+FrameFilterStatus statusOf(const DynamicFeatureFilterResult& details, FilterRule rule,
+                           bool is_first);
+
 /// Drops the points in regions: nothing tells whether they move.
 void dropRegions(Span<const std::uint8_t> in_region, FrameFilterResult& result);
 

@@ -40,6 +40,11 @@ MaskLabel labelAt(const MotionMask& mask, float u, float v) {
              : label;
 }
 
+/// What it does not know, and things that stand, of which parts may move.
+bool leavesOpen(MaskLabel label) {
+  return label == MaskLabel::kUnknown || label == MaskLabel::kStanding;
+}
+
 void countLabels(FilterStageResult& stage) {
   const auto count = [&](PointLabel label) {
     return static_cast<std::size_t>(std::count(stage.label.begin(), stage.label.end(), label));
@@ -83,6 +88,15 @@ std::vector<MaskLabel> labelsAt(const KeyPointsView& points, const MotionMask& m
   return labels;
 }
 
+std::vector<std::uint8_t> leftOpen(Span<const MaskLabel> seen) {
+  std::vector<std::uint8_t> is_open;
+  is_open.reserve(seen.size());
+  for (const MaskLabel label : seen) {
+    is_open.push_back(leavesOpen(label) ? 1 : 0);
+  }
+  return is_open;
+}
+
 DynamicFeatureFilterResult judgeByMask(DynamicFeatureFilterResult result,
                                        Span<const MaskLabel> seen,
                                        const MotionBeliefOptions& options) {
@@ -90,7 +104,7 @@ DynamicFeatureFilterResult judgeByMask(DynamicFeatureFilterResult result,
   for (std::size_t i = 0; i < seen.size(); ++i) {
     PointLabel& label = result.stage.label[i];
     float& weight = result.stage.weight[i];
-    if (seen[i] == MaskLabel::kUnknown || seen[i] == MaskLabel::kStanding) {
+    if (leavesOpen(seen[i])) {
       if (label == PointLabel::kDynamic) {
         label = PointLabel::kSuspect;
         weight = kContestedWeight;

@@ -2,6 +2,7 @@
 // What the motion mask says about key points.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -24,6 +25,9 @@ MotionMaskFrame maskFrameOf(const FrameInput& frame, const DynamicFeatureFilterI
 /// What the mask says at the nearest pixels of N points; unknown where it is worth nothing, and for
 /// corners of the room's side of a silhouette, which move with what moves.
 std::vector<MaskLabel> labelsAt(const KeyPointsView& points, const MotionMask& mask);
+
+/// N flags: 1 where judgeByMask() leaves the word to the steps before. Empty = no mask.
+std::vector<std::uint8_t> leftOpen(Span<const MaskLabel> seen);
 
 /// Labels, weights and beliefs of the points about which the mask knows something: what moves is
 /// dynamic, what is of the room static. Where it knows nothing, and of things that stand, the steps

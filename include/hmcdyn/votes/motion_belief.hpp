@@ -132,6 +132,9 @@ struct MotionBeliefInput {
   Span<const std::uint8_t> in_box;  ///< 1 in a detection box, whether or not it is dynamic.
   Span<const float> earlier_u;      ///< Columns in the frame of the memory (px); empty = none.
   Span<const float> earlier_v;      ///< Rows there; not finite stands for "where it is now".
+  /// 1 for points that are to be judged, 0 for those that somebody else has judged and that vote
+  /// only; empty = all are.
+  Span<const std::uint8_t> is_open = {};
 };
 
 namespace detail {
@@ -304,15 +307,17 @@ inline void checkInput(const MotionBeliefInput& input) {
   const std::size_t n = input.points.size();
   const bool earlier_fits = (input.earlier_u.empty() && input.earlier_v.empty()) ||
                             (input.earlier_u.size() == n && input.earlier_v.size() == n);
+  const bool open_fits = input.is_open.empty() || input.is_open.size() == n;
   if (input.distance.size() != n || input.label.size() != n || input.in_box.size() != n ||
-      !earlier_fits) {
-    throw std::invalid_argument("updateMotionBelief: " + std::to_string(n) + " key points, but " +
-                                std::to_string(input.distance.size()) + " distances, " +
-                                std::to_string(input.label.size()) + " labels, " +
-                                std::to_string(input.in_box.size()) + " flags, " +
-                                std::to_string(input.earlier_u.size()) + " earlier columns, " +
-                                std::to_string(input.earlier_v.size()) +
-                                " rows; expected equal sizes (no earlier pixels: 0)");
+      !earlier_fits || !open_fits) {
+    throw std::invalid_argument(
+        "updateMotionBelief: " + std::to_string(n) + " key points, but " +
+        std::to_string(input.distance.size()) + " distances, " +
+        std::to_string(input.label.size()) + " labels, " + std::to_string(input.in_box.size()) +
+        " flags, " + std::to_string(input.earlier_u.size()) + " earlier columns, " +
+        std::to_string(input.earlier_v.size()) + " rows, " + std::to_string(input.is_open.size()) +
+        " flags of open points; expected equal sizes (no earlier pixels: 0, all "
+        "points open: 0)");
   }
 }
 
@@ -328,7 +333,8 @@ inline void checkInput(const MotionBeliefInput& input) {
 /// Points outside every box and far from all that was believed to move are at rest. What was
 /// believed to move stays so outside the boxes, too: detectors miss people.
 ///
-/// A point whose pixel is not finite neither votes nor is judged.
+/// A point whose pixel is not finite neither votes nor is judged. One that is not open
+/// (MotionBeliefInput::is_open) is not judged either: its belief is NaN, its weight 0.
 ///
 /// @param memory of the frame before, of any number of points; empty at the start.
 /// @param workspace its `surface` must be surfaceDepths() of these points.
@@ -362,7 +368,8 @@ inline MotionBelief updateMotionBelief(const MotionBeliefInput& input, const Mot
   current.belief.assign(n, kNaN);
   current.weight.assign(n, 0.0f);
   for (std::size_t i = 0; i < n; ++i) {
-    if (detail::isPlaced(current.u[i], current.v[i], current.depth[i])) {
+    const bool is_open = input.is_open.empty() || input.is_open[i] != 0;
+    if (is_open && detail::isPlaced(current.u[i], current.v[i], current.depth[i])) {
       std::tie(current.belief[i], current.weight[i]) =
           detail::judge(input, i, current.depth[i], options, workspace);
     }
