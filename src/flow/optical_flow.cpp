@@ -118,22 +118,22 @@ std::vector<std::uint8_t> checkForth(const FlowPyramid& current, const FlowPyram
 
 }  // namespace
 
-FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& options) {
+FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& options,
+                             FlowPyramid reuse) {
   checkOptions(options);
   if (gray.empty() || gray.type() != CV_8UC1) {
     throw std::invalid_argument("buildFlowPyramid: image is " +
                                 (gray.empty() ? "empty" : cv::typeToString(gray.type())) +
                                 "; expected 8-bit gray (CV_8UC1)");
   }
-  FlowPyramid pyramid;
   // A part of a larger image could serve without a copy, but would take its border, and every later
   // change, from the caller's pixels.
   constexpr bool kWithDerivatives = true;
   constexpr bool kReuseInput = false;
-  cv::buildOpticalFlowPyramid(gray, pyramid, cv::Size(options.window, options.window),
+  cv::buildOpticalFlowPyramid(gray, reuse, cv::Size(options.window, options.window),
                               options.max_level, kWithDerivatives, cv::BORDER_REFLECT_101,
                               cv::BORDER_CONSTANT, kReuseInput);
-  return pyramid;
+  return reuse;
 }
 
 FlowMatches trackIntoEarlierFrame(const FlowPyramid& current, const FlowPyramid& earlier,

@@ -123,14 +123,14 @@ std::vector<KnownMotion> knownMotionOf(const FlowSelection& selection,
     return {};
   }
   FlowMatches chosen;
+  std::vector<float> surface;
   for (const std::size_t i : selection.source) {
     chosen.u.push_back(flow.u[i]);
     chosen.v.push_back(flow.v[i]);
+    surface.push_back(workspace.belief.surface.depth[i]);
   }
-  const SurfaceDepths surface =
-      surfaceDepths(input.depth, selection.points.u, selection.points.v, options.surface);
-  const std::vector<KnownMotion> remembered = knownMotion(
-      surface.depth, chosen.u, chosen.v, *input.memory, options.belief, workspace.belief);
+  const std::vector<KnownMotion> remembered =
+      knownMotion(surface, chosen.u, chosen.v, *input.memory, options.belief, workspace.belief);
   std::vector<KnownMotion> known(input.points.size(), KnownMotion::kUnknown);
   for (std::size_t k = 0; k < remembered.size(); ++k) {
     const std::size_t i = selection.source[k];
@@ -184,6 +184,10 @@ Comparison compareWithEarlier(const DynamicFeatureFilterInput& input,
                               DynamicFeatureFilterWorkspace& workspace) {
   Comparison result;
   result.distance.assign(input.points.size(), kNaN);
+  if (formsBeliefs(input, options)) {
+    workspace.belief.surface = surfaceDepths(input.depth, input.points.u, input.points.v,
+                                             options.surface, std::move(workspace.belief.surface));
+  }
   if (!distancesWanted(input, options)) {
     return result;
   }

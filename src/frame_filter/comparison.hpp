@@ -24,6 +24,7 @@ struct Comparison {
 bool formsBeliefs(const DynamicFeatureFilterInput& input,
                   const DynamicFeatureFilterOptions& options);
 
+/// Finds the points' surfaces first, where beliefs are formed; they stay in the workspace.
 /// @param input checked; its boxes are where to look for motion. @param in_region N flags.
 Comparison compareWithEarlier(const DynamicFeatureFilterInput& input,
                               Span<const std::uint8_t> in_region,

@@ -106,8 +106,6 @@ DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,
   if (!formsBeliefs(input, options)) {
     return result;
   }
-  workspace.belief.surface = surfaceDepths(input.depth, input.points.u, input.points.v,
-                                           options.surface, std::move(workspace.belief.surface));
   MotionBeliefInput votes;
   votes.points = input.points;
   votes.distance = result.distance;

@@ -22,8 +22,8 @@ DynamicFeatureFilterResult judgeByDistance(const DynamicFeatureFilterInput& inpu
                                            const DynamicFeatureFilterOptions& options,
                                            DynamicFeatureFilterWorkspace& workspace);
 
-/// The points vote on each other. A result of which no beliefs are formed (use_belief, another
-/// rule, no depth image) stays as it is.
+/// The points vote on each other, by the surfaces that judgeByDistance() left in the workspace. A
+/// result of which no beliefs are formed (use_belief, another rule, no depth image) stays as it is.
 /// @param is_open N flags, 0 for points that somebody else has judged; empty = none are.
 DynamicFeatureFilterResult judgeByBelief(DynamicFeatureFilterResult result,
                                          const DynamicFeatureFilterInput& input,

@@ -40,7 +40,7 @@ FrameFilterResult FrameFilter::Memory::filter(const FrameInput& frame,
   const KeyPoints points = internal::keyPointsOf(frame);
   internal::RememberedFrame current;
   current.timestamp = frame.timestamp;
-  current.pyramid = buildFlowPyramid(frame.gray, steps.flow);
+  current.pyramid = buildFlowPyramid(frame.gray, steps.flow, history.takeSpare());
   const std::vector<const internal::RememberedFrame*> past = framesBefore(frame.timestamp);
   const std::optional<Eigen::Isometry3d> predicted = predict(frame);
   std::vector<EarlierFrame> earlier = internal::earlierFrames(past, frame.timestamp, predicted);

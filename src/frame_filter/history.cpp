@@ -39,6 +39,7 @@ void FrameHistory::add(RememberedFrame frame) {
   const double longest = baselines_.empty() ? 0.0 : baselines_.back();
   constexpr double kSpare = 0.5;  // s: a late frame must still find one that is old enough
   while (!frames_.empty() && frames_.front().timestamp < frame.timestamp - longest - kSpare) {
+    spare_ = std::move(frames_.front().pyramid);
     frames_.pop_front();
   }
   frames_.push_back(std::move(frame));

@@ -45,6 +45,9 @@ class FrameHistory {
   /// Remembers a frame, and forgets what no baseline reaches any more.
   void add(RememberedFrame frame);
 
+  /// The images of a frame that was forgotten, for their memory; empty where there is none.
+  FlowPyramid takeSpare() noexcept { return std::exchange(spare_, {}); }
+
   /// Where the camera is expected: on from the last two poses as between them.
   std::optional<Eigen::Isometry3d> predict(double timestamp) const;
 
@@ -72,6 +75,7 @@ class FrameHistory {
  private:
   std::vector<double> baselines_;
   std::deque<RememberedFrame> frames_;  ///< Oldest first.
+  FlowPyramid spare_;
   bool in_callers_world_ = true;
 };
 

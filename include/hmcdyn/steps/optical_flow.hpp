@@ -30,9 +30,10 @@ struct OpticalFlowOptions {
 /// The pyramid that both ends of a match need; keep the current frame's for the next call.
 using FlowPyramid = std::vector<cv::Mat>;
 
-/// @param gray 8-bit, one channel; copied.
+/// @param gray 8-bit, one channel; copied. @param reuse a pyramid whose memory is taken over.
 /// @throws std::invalid_argument for an empty image or one of another type, or a bad option.
-FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& options = {});
+FlowPyramid buildFlowPyramid(const cv::Mat& gray, const OpticalFlowOptions& options = {},
+                             FlowPyramid reuse = {});
 
 /// The N key points in the earlier frame; NaN where the match was lost.
 struct FlowMatches {
