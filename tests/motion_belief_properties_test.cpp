@@ -119,6 +119,48 @@ TEST_F(MotionBeliefProperties, AReusedWorkspaceChangesNothing) {
   }
 }
 
+TEST_F(MotionBeliefProperties, PointsThatAreNotOpenVoteAllTheSame) {
+  const Frame frame = drawn(order, 0.0f, 0.0f);
+  const MotionBelief memory = update(frame);
+  const MotionBelief all = update(frame, memory);
+  std::vector<std::uint8_t> is_open(order.size());
+  for (std::size_t i = 0; i < is_open.size(); ++i) {
+    is_open[i] = i % 3 == 0 ? 1 : 0;
+  }
+  MotionBeliefInput input = frame.input();
+  input.is_open = is_open;
+  MotionBeliefWorkspace workspace;
+  workspace.surface = frame.surface;
+  const MotionBelief some =
+      updateMotionBelief(input, memory, test::fixedBeliefOptions(), workspace);
+  EXPECT_EQ(some.depth, all.depth);
+  for (std::size_t i = 0; i < is_open.size(); ++i) {
+    if (is_open[i] == 0) {
+      EXPECT_TRUE(std::isnan(some.belief[i])) << i;
+      EXPECT_EQ(some.weight[i], 0.0f) << i;
+    } else {
+      EXPECT_TRUE(some.belief[i] == all.belief[i] ||
+                  (std::isnan(some.belief[i]) && std::isnan(all.belief[i])))
+          << i;
+      EXPECT_EQ(some.weight[i], all.weight[i]) << i;
+    }
+  }
+}
+
+TEST(MotionBelief, FlagsOfOpenPointsAreCounted) {
+  const Frame frame = Frame().add(100, 50, 2.0f, 2.0f);
+  const std::vector<std::uint8_t> is_open(2, 1);
+  MotionBeliefInput input = frame.input();
+  input.is_open = is_open;
+  MotionBeliefWorkspace workspace;
+  workspace.surface = frame.surface;
+  EXPECT_EQ(
+      test::invalidArgumentOf(
+          [&] { updateMotionBelief(input, {}, test::fixedBeliefOptions(), workspace); }),
+      "updateMotionBelief: is_open has 2 elements; expected one for each of the 1 key points, "
+      "or none");
+}
+
 TEST(MotionBelief, UnequalArraysAreNamed) {
   const auto message = [](auto change) {
     Frame frame = Frame().add(100, 50, 2.0f, 2.0f);

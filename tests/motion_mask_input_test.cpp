@@ -175,11 +175,12 @@ TEST(MotionMaskInput, OptionsOutOfRangeAreRefusedByName) {
   };
   refused("working_width", [](MotionMaskOptions& o) { o.working_width = 8; });
   refused("max_moving_share", [](MotionMaskOptions& o) { o.max_moving_share = 1.5f; });
-  refused("depth.max_depth", [](MotionMaskOptions& o) { o.depth.max_depth = 0.0f; });
-  refused("noise_floor", [](MotionMaskOptions& o) { o.depth.error.noise_floor = -1.0f; });
-  refused("evidence.free_weight", [](MotionMaskOptions& o) { o.evidence.free_weight = 0.0f; });
-  refused("segment.seed_belief", [](MotionMaskOptions& o) { o.segment.seed_belief = 0.0f; });
-  refused("history.max_age", [](MotionMaskOptions& o) { o.history.max_age = -1.0; });
+  refused("max_depth", [](MotionMaskOptions& o) { o.max_depth = 0.0f; });
+  refused("noise_floor", [](MotionMaskOptions& o) { o.depth_error.noise_floor = -1.0f; });
+  refused("gray_tolerance", [](MotionMaskOptions& o) { o.gray_tolerance = -1.0f; });
+  refused("min_area", [](MotionMaskOptions& o) { o.min_area = 2.0f; });
+  refused("max_age", [](MotionMaskOptions& o) { o.max_age = -1.0; });
+  refused("max_gap", [](MotionMaskOptions& o) { o.max_gap = 0.0; });
   expectRefused([] { MotionMaskEstimator estimator(PinholeCamera{}); }, "fx");
 }
 

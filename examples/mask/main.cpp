@@ -32,7 +32,7 @@ void addOptions(CLI::App& app, MaskRunOptions& options) {
                  "(default: no detector)");
   app.add_option("--max-frames", options.max_frames, "Stop after so many frames; 0 = all")
       ->capture_default_str();
-  app.add_option("--max-depth", options.mask.depth.max_depth,
+  app.add_option("--max-depth", options.mask.max_depth,
                  "Farther pixels (m) are unknown: depth cameras err by too much")
       ->check(hmcdyn::support::aboveZero())
       ->capture_default_str();

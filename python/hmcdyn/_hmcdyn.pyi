@@ -502,62 +502,6 @@ class LabelRegion:
     score: float
     def __init__(self, label: int, class_id: int = ..., score: float = ...) -> None: ...
 
-class MaskDepthOptions:
-    max_depth: float
-    error: DepthErrorModel
-    gate: float
-    slack: float
-    gray_tolerance: float
-    def __init__(
-        self,
-        *,
-        max_depth: float = ...,
-        error: DepthErrorModel | dict[str, Any] = ...,
-        gate: float = ...,
-        slack: float = ...,
-        gray_tolerance: float = ...,
-    ) -> None: ...
-
-class MaskEvidenceOptions:
-    free_weight: float
-    departure_weight: float
-    mismatch_weight: float
-    named_mismatch_weight: float
-    same_weight_young: float
-    same_age: float
-    drift: float
-    named_drift: float
-    dynamic_point_weight: float
-    def __init__(
-        self,
-        *,
-        free_weight: float = ...,
-        departure_weight: float = ...,
-        mismatch_weight: float = ...,
-        named_mismatch_weight: float = ...,
-        same_weight_young: float = ...,
-        same_age: float = ...,
-        drift: float = ...,
-        named_drift: float = ...,
-        dynamic_point_weight: float = ...,
-    ) -> None: ...
-
-class MaskHistoryOptions:
-    max_age: float
-    max_gap: float
-    max_step: float
-    max_turn: float
-    min_agreement: float
-    def __init__(
-        self,
-        *,
-        max_age: float = ...,
-        max_gap: float = ...,
-        max_step: float = ...,
-        max_turn: float = ...,
-        min_agreement: float = ...,
-    ) -> None: ...
-
 class MaskInstance:
     @property
     def number(self) -> int: ...
@@ -587,32 +531,6 @@ class MaskReason(enum.IntEnum):
     GRAY = 1
     MEMORY = 2
     NAMED = 3
-
-class MaskSegmentOptions:
-    reach: float
-    depth_step: float
-    belief: float
-    seed_belief: float
-    min_area: float
-    min_fresh: float
-    min_fresh_on: float
-    fresh_age: float
-    proof_age: float
-    box_depth: float
-    def __init__(
-        self,
-        *,
-        reach: float = ...,
-        depth_step: float = ...,
-        belief: float = ...,
-        seed_belief: float = ...,
-        min_area: float = ...,
-        min_fresh: float = ...,
-        min_fresh_on: float = ...,
-        fresh_age: float = ...,
-        proof_age: float = ...,
-        box_depth: float = ...,
-    ) -> None: ...
 
 class MaskState(enum.IntEnum):
     GOOD = 0
@@ -706,12 +624,13 @@ class MotionMaskEstimator:
         options: MotionMaskOptions | None = ...,
         *,
         working_width: int = ...,
+        max_depth: float = ...,
+        depth_error: DepthErrorModel | dict[str, Any] = ...,
+        gray_tolerance: float = ...,
+        min_area: float = ...,
         max_moving_share: float = ...,
-        min_depth_share: float = ...,
-        depth: MaskDepthOptions | dict[str, Any] = ...,
-        evidence: MaskEvidenceOptions | dict[str, Any] = ...,
-        segment: MaskSegmentOptions | dict[str, Any] = ...,
-        history: MaskHistoryOptions | dict[str, Any] = ...,
+        max_age: float = ...,
+        max_gap: float = ...,
     ) -> None: ...
     def update(
         self,
@@ -728,22 +647,24 @@ class MotionMaskEstimator:
 
 class MotionMaskOptions:
     working_width: int
+    max_depth: float
+    depth_error: DepthErrorModel
+    gray_tolerance: float
+    min_area: float
     max_moving_share: float
-    min_depth_share: float
-    depth: MaskDepthOptions
-    evidence: MaskEvidenceOptions
-    segment: MaskSegmentOptions
-    history: MaskHistoryOptions
+    max_age: float
+    max_gap: float
     def __init__(
         self,
         *,
         working_width: int = ...,
+        max_depth: float = ...,
+        depth_error: DepthErrorModel | dict[str, Any] = ...,
+        gray_tolerance: float = ...,
+        min_area: float = ...,
         max_moving_share: float = ...,
-        min_depth_share: float = ...,
-        depth: MaskDepthOptions | dict[str, Any] = ...,
-        evidence: MaskEvidenceOptions | dict[str, Any] = ...,
-        segment: MaskSegmentOptions | dict[str, Any] = ...,
-        history: MaskHistoryOptions | dict[str, Any] = ...,
+        max_age: float = ...,
+        max_gap: float = ...,
     ) -> None: ...
 
 NOISE: int

@@ -41,10 +41,6 @@ MotionMask updateMask(SharedEstimator& self, double timestamp, const ArrayLike& 
 }  // namespace
 
 void bindMotionMask(py::module_& module) {
-  HMCDYN_BIND_OPTIONS(module, MaskDepthOptions);
-  HMCDYN_BIND_OPTIONS(module, MaskEvidenceOptions);
-  HMCDYN_BIND_OPTIONS(module, MaskSegmentOptions);
-  HMCDYN_BIND_OPTIONS(module, MaskHistoryOptions);
   HMCDYN_BIND_OPTIONS(module, MotionMaskOptions);
   HMCDYN_BIND_RESULT(module, MaskInstance);
   HMCDYN_BIND_RESULT(module, MotionMask);

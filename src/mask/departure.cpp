@@ -95,12 +95,12 @@ std::optional<std::size_t> pixelBeside(int pixel, float depth, const SmallFrame&
 }  // namespace
 
 void addDepartures(const SmallFrame& frame, const SmallCamera& camera, const SmallFrame& earlier,
-                   std::uint8_t bit, const MotionMaskOptions& options, EvidenceImage& image) {
+                   std::uint8_t bit, const MaskModel& model, EvidenceImage& image) {
   const RelativePose motion = relativePose(frame.camera_from_world, earlier.camera_from_world);
-  const SurfaceTolerance tolerance = surfaceTolerance(options.depth);
-  const float weight = options.evidence.departure_weight;
+  const SurfaceTolerance tolerance = surfaceTolerance(model);
+  const float weight = model.evidence.departure_weight;
   for (int row = 0; row < earlier.height; ++row) {
-    placeRow(row, earlier, camera, motion, options.depth.max_depth, image.places);
+    placeRow(row, earlier, camera, motion, model.options.max_depth, image.places);
     for (std::size_t x = 0; x < image.places.pixel.size(); ++x) {
       const std::int32_t place = image.places.pixel[x];
       const float depth = image.places.depth[x];

@@ -7,6 +7,7 @@
 #include <hmcdyn/motion_mask.hpp>
 
 #include "mask/evidence.hpp"
+#include "mask/model.hpp"
 #include "mask/small_frame.hpp"
 
 namespace hmcdyn::internal {
@@ -16,6 +17,6 @@ namespace hmcdyn::internal {
 /// wide thing that moves across, the leading edge shows free space and the trailing edge this.
 /// @param bit of the earlier frame among the comparisons.
 void addDepartures(const SmallFrame& frame, const SmallCamera& camera, const SmallFrame& earlier,
-                   std::uint8_t bit, const MotionMaskOptions& options, EvidenceImage& image);
+                   std::uint8_t bit, const MaskModel& model, EvidenceImage& image);
 
 }  // namespace hmcdyn::internal

@@ -50,8 +50,8 @@ RowPlaces prepared(RowPlaces reuse, int width, const SmallCamera& camera) {
 class Comparer {
  public:
   Comparer(const SmallFrame& frame, const SmallCamera& camera,
-           const std::vector<std::uint8_t>& named, const MotionMaskOptions& options)
-      : frame_(frame), camera_(camera), named_(named), options_(options) {}
+           const std::vector<std::uint8_t>& named, const MaskModel& model)
+      : frame_(frame), camera_(camera), named_(named), model_(model) {}
 
   Tally run(const Comparison& with, EvidenceImage& image) const {
     Tally tally;
@@ -74,7 +74,7 @@ class Comparer {
     const float ray_y = (static_cast<float>(y) - camera.cy) / camera.fy;
     const int width = frame_.width;
     const int height = frame_.height;
-    const float max_depth = options_.depth.max_depth;
+    const float max_depth = model_.options.max_depth;
     const float* depth = frame_.depth.data() + frame_.index(y, 0);
     const float* rays = places.ray.data();
     float* to_depth = places.depth.data();
@@ -95,7 +95,7 @@ class Comparer {
   }
 
   Tally row(int y, const Comparison& with, EvidenceImage& image) const {
-    const float max_depth = options_.depth.max_depth;
+    const float max_depth = model_.options.max_depth;
     const std::size_t start = frame_.index(y, 0);
     Tally tally;
     for (std::size_t x = 0; x < image.places.pixel.size(); ++x) {
@@ -117,7 +117,7 @@ class Comparer {
     if (!(cell.farthest > 0.0f)) {
       return;
     }
-    const MaskEvidenceOptions& o = options_.evidence;
+    const EvidenceModel& o = model_.evidence;
     const float tolerance = with.tolerance.at(there);
     Evidence& evidence = image.evidence[i];
     Comparisons& comparisons = image.comparisons[i];
@@ -148,7 +148,7 @@ class Comparer {
   }
 
   bool differsInGray(std::size_t i, const MaskCell& cell) const {
-    const float tolerance = options_.depth.gray_tolerance;
+    const float tolerance = model_.options.gray_tolerance;
     const float gray = frame_.gray[i];
     return gray > static_cast<float>(cell.brightest) + tolerance ||
            gray < static_cast<float>(cell.darkest) - tolerance;
@@ -157,7 +157,7 @@ class Comparer {
   const SmallFrame& frame_;
   const SmallCamera& camera_;
   const std::vector<std::uint8_t>& named_;
-  const MotionMaskOptions& options_;
+  const MaskModel& model_;
 };
 
 /// Gray levels say nothing where the whole image has become brighter or darker: a lamp, the
@@ -172,15 +172,15 @@ bool areComparable(const SmallFrame& frame, const SmallFrame& earlier, float tol
 /// since those believed to be the room would be the ones without a mismatch; the weight is the
 /// logarithm of the likelihood ratio. Where boxes or masks say what may move, gray levels say
 /// little.
-float mismatchWeight(const Tally& tally, bool is_named, const MaskEvidenceOptions& options) {
+float mismatchWeight(const Tally& tally, bool is_named, const EvidenceModel& model) {
   if (is_named) {
-    return options.named_mismatch_weight;
+    return model.named_mismatch_weight;
   }
   if (tally.same < kFewestToDoubt) {
     return 0.0f;
   }
   const float share = static_cast<float>(tally.mismatch + 1) / static_cast<float>(tally.same);
-  return std::clamp(options.mismatch_weight * std::log(kMismatchOfMoving / share), 0.0f, 1.0f);
+  return std::clamp(model.mismatch_weight * std::log(kMismatchOfMoving / share), 0.0f, 1.0f);
 }
 
 void addMismatches(float weight, std::uint8_t bit, EvidenceImage& image) {
@@ -193,27 +193,27 @@ void addMismatches(float weight, std::uint8_t bit, EvidenceImage& image) {
 
 }  // namespace
 
-SurfaceTolerance surfaceTolerance(const MaskDepthOptions& options) {
-  const float sigmas = options.gate * std::sqrt(2.0f);  // both depths are noisy
-  const DepthErrorModel& error = options.error;
-  return {options.slack + sigmas * error.noise_floor, error.systematic_linear,
+SurfaceTolerance surfaceTolerance(const MaskModel& model) {
+  const float sigmas = model.depth.gate * std::sqrt(2.0f);  // both depths are noisy
+  const DepthErrorModel& error = model.options.depth_error;
+  return {model.depth.slack + sigmas * error.noise_floor, error.systematic_linear,
           sigmas * error.noise_quadratic + error.systematic_quadratic};
 }
 
 EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& camera,
                                  const std::vector<const SmallFrame*>& earlier,
-                                 const std::vector<std::uint8_t>& named,
-                                 const MotionMaskOptions& options, EvidenceImage reuse) {
+                                 const std::vector<std::uint8_t>& named, const MaskModel& model,
+                                 EvidenceImage reuse) {
   EvidenceImage image = std::move(reuse);
   image.evidence.assign(frame.size(), {});
   image.comparisons.assign(frame.size(), {});
   image.agreement = 1.0f;
   image.fresh = 0;
   image.proof = 0;
-  const MaskEvidenceOptions& o = options.evidence;
+  const EvidenceModel& o = model.evidence;
   image.places = prepared(std::move(image.places), frame.width, camera);
-  const Comparer comparer(frame, camera, named, options);
-  const SurfaceTolerance tolerance = surfaceTolerance(options.depth);
+  const Comparer comparer(frame, camera, named, model);
+  const SurfaceTolerance tolerance = surfaceTolerance(model);
   std::uint8_t bit = 1;
   for (const SmallFrame* other : earlier) {
     const double age = frame.timestamp - other->timestamp;
@@ -221,19 +221,19 @@ EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& cam
     const Tally tally =
         comparer.run({other, relativePose(other->camera_from_world, frame.camera_from_world), bit,
                       o.same_weight_young + (1.0f - o.same_weight_young) * grown, tolerance,
-                      areComparable(frame, *other, options.depth.gray_tolerance)},
+                      areComparable(frame, *other, model.options.gray_tolerance)},
                      image);
     addMismatches(mismatchWeight(tally, !named.empty(), o), bit, image);
     if (o.departure_weight > 0.0f && age >= kYoungestDeparture && age <= kOldestDeparture) {
-      addDepartures(frame, camera, *other, bit, options, image);
+      addDepartures(frame, camera, *other, bit, model, image);
     }
     if (bit == 1 && tally.compared >= kFewestToDoubt) {
       image.agreement = static_cast<float>(tally.same) / static_cast<float>(tally.compared);
     }
-    if (age <= options.segment.fresh_age + 0.01 || bit == 1) {
+    if (age <= model.segment.fresh_age + 0.01 || bit == 1) {
       image.fresh = static_cast<std::uint8_t>(image.fresh | bit);
     }
-    if (age >= options.segment.proof_age) {
+    if (age >= model.segment.proof_age) {
       image.proof = static_cast<std::uint8_t>(image.proof | bit);
     }
     bit = static_cast<std::uint8_t>(bit << 1);

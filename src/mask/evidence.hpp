@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mask/model.hpp"
 #include "mask/small_frame.hpp"
 
 namespace hmcdyn::internal {
@@ -29,7 +30,7 @@ struct SurfaceTolerance {
   float quadratic = 0.0f;
   float at(float z) const { return offset + (linear + quadratic * z) * z; }
 };
-SurfaceTolerance surfaceTolerance(const MaskDepthOptions& options);
+SurfaceTolerance surfaceTolerance(const MaskModel& model);
 
 /// Where the surfaces of one row are in another frame: worked out for a row at once, so that the
 /// compiler takes several pixels at a time.
@@ -52,8 +53,8 @@ struct EvidenceImage {
 /// @param reuse its memory is taken over.
 EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& camera,
                                  const std::vector<const SmallFrame*>& earlier,
-                                 const std::vector<std::uint8_t>& named,
-                                 const MotionMaskOptions& options, EvidenceImage reuse);
+                                 const std::vector<std::uint8_t>& named, const MaskModel& model,
+                                 EvidenceImage reuse);
 
 /// Adds what key points say that were found to move.
 void addPoints(const MotionMaskFrame& frame, int reduction, const SmallFrame& small, float weight,

@@ -13,6 +13,7 @@
 #include "image_text.hpp"
 #include "mask/depth_history.hpp"
 #include "mask/evidence.hpp"
+#include "mask/model.hpp"
 #include "mask/named.hpp"
 #include "mask/small_frame.hpp"
 #include "mask/smoothing.hpp"
@@ -60,7 +61,7 @@ void checkFrame(const MotionMaskFrame& frame) {
 
 struct MotionMaskEstimator::State {
   PinholeCamera camera;
-  MotionMaskOptions options;
+  internal::MaskModel model;
   DepthHistory history;
   MotionMask mask;
   cv::Size size;
@@ -108,11 +109,11 @@ std::optional<MaskState> MotionMaskEstimator::State::reasonToStartAnew(
   }
   const SmallFrame& before = history.youngest();
   const double gap = small.timestamp - before.timestamp;
-  if (!(gap > 0.0) || gap > options.history.max_gap) {
+  if (!(gap > 0.0) || gap > model.options.max_gap) {
     return MaskState::kTimeJump;
   }
   const PoseStep step = stepBetween(before.camera_from_world, small.camera_from_world);
-  if (step.distance > options.history.max_step || step.angle > options.history.max_turn) {
+  if (step.distance > model.history.max_step || step.angle > model.history.max_turn) {
     return MaskState::kCameraJump;
   }
   return std::nullopt;
@@ -156,7 +157,7 @@ void MotionMaskEstimator::State::labelPixels(const MotionMaskFrame& frame, int r
     }
     if (!named.empty() && named[i] == kNamed) {
       label[i] = static_cast<std::uint8_t>(MaskLabel::kStanding);
-    } else if (!isKnown(evidence.evidence[i]) || small.depth[i] > options.depth.max_depth ||
+    } else if (!isKnown(evidence.evidence[i]) || small.depth[i] > model.options.max_depth ||
                (!named.empty() && named[i] == kInBox &&
                 (evidence.comparisons[i].same & evidence.proof) == 0)) {
       label[i] = static_cast<std::uint8_t>(MaskLabel::kUnknown);
@@ -164,7 +165,7 @@ void MotionMaskEstimator::State::labelPixels(const MotionMaskFrame& frame, int r
   }
   labelHoles(small, label, holes);
   labelWholeImage(frame.depth, small, reduction, label, holes, mask.label);
-  const auto least = static_cast<float>(measured) * options.max_moving_share;
+  const auto least = static_cast<float>(measured) * model.options.max_moving_share;
   mask.state = static_cast<float>(moving) > least ? MaskState::kTooLarge : MaskState::kGood;
   mask.moving_share = static_cast<float>(moving) / static_cast<float>(small.size());
 }
@@ -172,17 +173,17 @@ void MotionMaskEstimator::State::labelPixels(const MotionMaskFrame& frame, int r
 void MotionMaskEstimator::State::judge(const MotionMaskFrame& frame, int reduction,
                                        SmallFrame& small) {
   const SmallCamera reduced = smallCamera(camera, reduction);
-  addPoints(frame, reduction, small, options.evidence.dynamic_point_weight, evidence.evidence);
-  spreadAlongSurfaces(small, options.segment, evidence.evidence, smoothing);
+  addPoints(frame, reduction, small, model.evidence.dynamic_point_weight, evidence.evidence);
+  spreadAlongSurfaces(small, model.segment, evidence.evidence, smoothing);
   believe(small);
-  const ThingsInput input{small, reduced, evidence, named, earlier, options, reduction};
+  const ThingsInput input{small, reduced, evidence, named, earlier, model, reduction};
   mask.instances = findThings(input, next_number, things, std::move(mask.instances));
   measureThings(input, small);
   labelPixels(frame, reduction, small);
 }
 
 const MotionMask& MotionMaskEstimator::State::update(const MotionMaskFrame& frame) {
-  const int reduction = reductionOf(frame.depth.cols, options.working_width);
+  const int reduction = reductionOf(frame.depth.cols, model.options.working_width);
   if (frame.depth.size() != size) {
     startAnew(MaskState::kFirstFrame);
     size = frame.depth.size();
@@ -194,7 +195,7 @@ const MotionMask& MotionMaskEstimator::State::update(const MotionMaskFrame& fram
     return unknown(MaskState::kMotionUnknown);
   }
   SmallFrame small = reduceFrame(frame, reduction, history.spare(), reducing);
-  if (small.depth_share < options.min_depth_share) {
+  if (small.depth_share < model.min_depth_share) {
     history.giveBack(std::move(small));
     return unknown(MaskState::kNoDepth);
   }
@@ -202,21 +203,21 @@ const MotionMask& MotionMaskEstimator::State::update(const MotionMaskFrame& fram
     startAnew(*why);
   }
   if (history.empty()) {
-    history.push(std::move(small), options.history.max_age);
+    history.push(std::move(small), model.options.max_age);
     return unknown(std::exchange(restart, MaskState::kFirstFrame));
   }
-  named = namedPixels(frame, small, reduction, options.segment.box_depth, std::move(named), depths);
+  named = namedPixels(frame, small, reduction, model.segment.box_depth, std::move(named), depths);
   earlier = history.select(frame.timestamp, std::move(earlier));
-  evidence = compareWithEarlier(small, smallCamera(camera, reduction), earlier, named, options,
+  evidence = compareWithEarlier(small, smallCamera(camera, reduction), earlier, named, model,
                                 std::move(evidence));
   mask.agreement = evidence.agreement;
-  if (evidence.agreement < options.history.min_agreement) {
+  if (evidence.agreement < model.history.min_agreement) {
     startAnew(MaskState::kMotionDoubtful);
-    history.push(std::move(small), options.history.max_age);
+    history.push(std::move(small), model.options.max_age);
     return unknown(std::exchange(restart, MaskState::kFirstFrame));
   }
   judge(frame, reduction, small);
-  history.push(std::move(small), options.history.max_age);
+  history.push(std::move(small), model.options.max_age);
   return mask;
 }
 
@@ -229,7 +230,7 @@ MotionMaskEstimator::MotionMaskEstimator(const PinholeCamera& camera,
   checkOptions(options);
   state_ = std::make_unique<State>();
   state_->camera = camera;
-  state_->options = options;
+  state_->model.options = options;
 }
 
 MotionMaskEstimator::~MotionMaskEstimator() = default;

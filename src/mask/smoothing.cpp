@@ -36,18 +36,17 @@ void coupleRow(const float* here, const float* before, int count, float most, fl
   }
 }
 
-void couple(const SmallFrame& frame, const MaskSegmentOptions& options,
-            SmoothingWorkspace& workspace) {
-  const float most = std::exp(-std::sqrt(2.0f) / options.reach);  // Gastal and Oliveira, eq. 21
+void couple(const SmallFrame& frame, const SegmentModel& model, SmoothingWorkspace& workspace) {
+  const float most = std::exp(-std::sqrt(2.0f) / model.reach);  // Gastal and Oliveira, eq. 21
   workspace.left.assign(frame.size(), 0.0f);
   workspace.above.assign(frame.size(), 0.0f);
   for (int y = 0; y < frame.height; ++y) {
     const std::size_t start = frame.index(y, 0);
     const float* depth = frame.depth.data() + start;
-    coupleRow(depth + 1, depth, frame.width - 1, most, options.depth_step,
+    coupleRow(depth + 1, depth, frame.width - 1, most, model.depth_step,
               workspace.left.data() + start + 1);
     if (y > 0) {
-      coupleRow(depth, depth - frame.width, frame.width, most, options.depth_step,
+      coupleRow(depth, depth - frame.width, frame.width, most, model.depth_step,
                 workspace.above.data() + start);
     }
   }
@@ -93,9 +92,9 @@ void alongColumns(const std::vector<float>& above, std::size_t width,
 
 }  // namespace
 
-void spreadAlongSurfaces(const SmallFrame& frame, const MaskSegmentOptions& options,
+void spreadAlongSurfaces(const SmallFrame& frame, const SegmentModel& model,
                          std::vector<Evidence>& evidence, SmoothingWorkspace& workspace) {
-  couple(frame, options, workspace);
+  couple(frame, model, workspace);
   const auto width = static_cast<std::size_t>(frame.width);
   constexpr std::size_t kTogether = 4;
   workspace.lines.resize(kTogether * width);

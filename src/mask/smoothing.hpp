@@ -17,7 +17,7 @@ struct SmoothingWorkspace {
 
 /// Normalised convolution by two rounds of two-sided recursive filters along rows and columns.
 /// @param evidence of each pixel; afterwards the sums around it.
-void spreadAlongSurfaces(const SmallFrame& frame, const MaskSegmentOptions& options,
+void spreadAlongSurfaces(const SmallFrame& frame, const SegmentModel& model,
                          std::vector<Evidence>& evidence, SmoothingWorkspace& workspace);
 
 /// -1 .. 1 of the sums; 0 where nothing is known.

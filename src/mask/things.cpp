@@ -23,7 +23,7 @@ bool grow(std::uint32_t seed, const ThingsInput& in, std::int16_t number, Things
   const auto& depth = in.frame.depth;
   const auto& cells = in.frame.cells;
   const auto width = static_cast<std::uint32_t>(in.frame.width);
-  const float least = in.options.segment.belief;
+  const float least = in.model.segment.belief;
   const std::size_t start = w.pixels.size();
   float strongest = -1.0f;
   w.pixels.push_back(seed);
@@ -45,8 +45,8 @@ bool grow(std::uint32_t seed, const ThingsInput& in, std::int16_t number, Things
     visit(at + width < depth.size(), at + width);
   }
   const auto area = static_cast<float>(w.pixels.size() - start);
-  if (strongest > in.options.segment.seed_belief &&
-      area >= in.options.segment.min_area * static_cast<float>(depth.size())) {
+  if (strongest > in.model.segment.seed_belief &&
+      area >= in.model.options.min_area * static_cast<float>(depth.size())) {
     return true;
   }
   w.pixels.resize(start);
@@ -58,7 +58,7 @@ void growAll(const ThingsInput& in, ThingsWorkspace& w) {
   w.first.assign(1, 0);
   w.component.assign(in.frame.size(), -1);
   for (std::uint32_t i = 0; i < in.frame.size(); ++i) {
-    if (w.component[i] < 0 && in.frame.cells[i].belief > in.options.segment.belief &&
+    if (w.component[i] < 0 && in.frame.cells[i].belief > in.model.segment.belief &&
         w.first.size() < static_cast<std::size_t>(kMostNumbers)) {
       if (grow(i, in, static_cast<std::int16_t>(w.first.size() - 1), w)) {
         w.first.push_back(static_cast<std::uint32_t>(w.pixels.size()));
@@ -103,8 +103,8 @@ MaskReason reasonOf(const Votes& votes, std::size_t pixels) {
 }
 
 /// What moved in the frame before moves on by a smaller share: what drifts slowly would flicker.
-bool doesMove(const Votes& votes, bool moved, const MaskSegmentOptions& options) {
-  const float least = moved ? options.min_fresh_on : options.min_fresh;
+bool doesMove(const Votes& votes, bool moved, const SegmentModel& model) {
+  const float least = moved ? model.min_fresh_on : model.min_fresh;
   return static_cast<float>(votes.fresh) > least * static_cast<float>(votes.seen);
 }
 
@@ -210,7 +210,7 @@ std::vector<MaskInstance> findThings(const ThingsInput& in, int& next_number, Th
     }
     w.taken.push_back(thing.number);
     const bool moved = std::find(w.moved.begin(), w.moved.end(), thing.number) != w.moved.end();
-    thing.moves = doesMove(votes, moved, in.options.segment);
+    thing.moves = doesMove(votes, moved, in.model.segment);
     for (const auto* pixel = begin; pixel != end; ++pixel) {
       w.label[*pixel] =
           static_cast<std::uint8_t>(thing.moves ? MaskLabel::kMoving : MaskLabel::kStanding);

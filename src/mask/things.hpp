@@ -15,7 +15,7 @@ struct ThingsInput {
   const EvidenceImage& evidence;
   const std::vector<std::uint8_t>& named;
   const std::vector<const SmallFrame*>& earlier;  ///< Youngest first; not empty.
-  const MotionMaskOptions& options;
+  const MaskModel& model;
   int reduction;
 };
 

@@ -307,17 +307,20 @@ inline void checkInput(const MotionBeliefInput& input) {
   const std::size_t n = input.points.size();
   const bool earlier_fits = (input.earlier_u.empty() && input.earlier_v.empty()) ||
                             (input.earlier_u.size() == n && input.earlier_v.size() == n);
-  const bool open_fits = input.is_open.empty() || input.is_open.size() == n;
   if (input.distance.size() != n || input.label.size() != n || input.in_box.size() != n ||
-      !earlier_fits || !open_fits) {
+      !earlier_fits) {
+    throw std::invalid_argument("updateMotionBelief: " + std::to_string(n) + " key points, but " +
+                                std::to_string(input.distance.size()) + " distances, " +
+                                std::to_string(input.label.size()) + " labels, " +
+                                std::to_string(input.in_box.size()) + " flags, " +
+                                std::to_string(input.earlier_u.size()) + " earlier columns, " +
+                                std::to_string(input.earlier_v.size()) +
+                                " rows; expected equal sizes (no earlier pixels: 0)");
+  }
+  if (!input.is_open.empty() && input.is_open.size() != n) {
     throw std::invalid_argument(
-        "updateMotionBelief: " + std::to_string(n) + " key points, but " +
-        std::to_string(input.distance.size()) + " distances, " +
-        std::to_string(input.label.size()) + " labels, " + std::to_string(input.in_box.size()) +
-        " flags, " + std::to_string(input.earlier_u.size()) + " earlier columns, " +
-        std::to_string(input.earlier_v.size()) + " rows, " + std::to_string(input.is_open.size()) +
-        " flags of open points; expected equal sizes (no earlier pixels: 0, all "
-        "points open: 0)");
+        "updateMotionBelief: is_open has " + std::to_string(input.is_open.size()) +
+        " elements; expected one for each of the " + std::to_string(n) + " key points, or none");
   }
 }
 

@@ -9,8 +9,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "bundle_scene.hpp"
 #include "invalid_argument.hpp"
+#include "map/bundle_scene.hpp"
 #include "se3_manifold.hpp"
 #include "slam/map/relative_pose_cost.hpp"
 
