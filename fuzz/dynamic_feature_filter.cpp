@@ -198,12 +198,12 @@ hmcdyn::DynamicFeatureFilterInput anyInput(FuzzedDataProvider& data,
   input.pyramid = &frame.current;
   input.earlier = frame.earlier;
   if (data.ConsumeBool()) {
-    input.labels = anyMask(data, size);
+    input.regions.labels = anyMask(data, size);
     frame.regions = hmcdyn::fuzz::anyRegions(data);
-    input.regions = frame.regions;
+    input.regions.labelled = frame.regions;
   } else {
     frame.boxes = hmcdyn::fuzz::anyBoxes(data, 3);
-    input.boxes = frame.boxes;
+    input.regions.boxes = frame.boxes;
   }
   if (data.ConsumeBool()) {
     frame.depth = anyDepth(data, size);

@@ -64,7 +64,7 @@ struct BelievedClip {
     DynamicFeatureFilterInput input;
     input.pyramid = &current;
     input.points = points.view();
-    input.boxes = boxes;
+    input.regions = boxes;
     input.earlier = earlier;
     input.memory = memory;
     if (!depth.empty()) {

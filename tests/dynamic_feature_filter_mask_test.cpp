@@ -71,15 +71,14 @@ struct MaskedClip {
 
   DynamicFeatureFilterResult byBoxes(const std::vector<DetectionBox>& boxes) const {
     DynamicFeatureFilterInput frame = input;
-    frame.boxes = boxes;
+    frame.regions = boxes;
     DynamicFeatureFilterWorkspace workspace;
     return filterDynamicFeatures(frame, options, workspace);
   }
   DynamicFeatureFilterResult byMask(const cv::Mat& labels,
                                     const std::vector<LabelRegion>& regions = kThing) const {
     DynamicFeatureFilterInput frame = input;
-    frame.labels = labels;
-    frame.regions = regions;
+    frame.regions = Regions(labels, regions);
     DynamicFeatureFilterWorkspace workspace;
     return filterDynamicFeatures(frame, options, workspace);
   }
@@ -206,8 +205,8 @@ TEST(DynamicFeatureFilterMask, RefusesBoxesAndAMaskAtOnce) {
   const MaskedClip clip(false);
   DynamicFeatureFilterInput frame = clip.input;
   const std::vector<DetectionBox> boxes = {LayeredScene::boxOfThing()};
-  frame.boxes = boxes;
-  frame.labels = emptyMask();
+  frame.regions = boxes;
+  frame.regions.labels = emptyMask();
   DynamicFeatureFilterWorkspace workspace;
   EXPECT_THAT(
       test::invalidArgumentOf([&] { filterDynamicFeatures(frame, clip.options, workspace); }),

@@ -146,7 +146,7 @@ TEST(MotionMaskInput, BoxesOutsideTheImageOrNotFiniteNameNothing) {
                                            {nan, 0.0f, 100.0f, 100.0f},
                                            {100.0f, 100.0f, 50.0f, 50.0f}};
   SlidingThing scene = sceneAt(20 * kStep);
-  scene.frame().boxes = boxes;
+  scene.frame().regions = boxes;
   EXPECT_EQ(cv::countNonZero(estimator.update(scene.frame()).label == 128), 0);
 }
 
@@ -162,7 +162,8 @@ TEST(MotionMaskInput, ImagesThatDoNotFitAreRefusedByName) {
   refused("depth", [](MotionMaskFrame& frame) { frame.depth = cv::Mat(15, 160, CV_32FC1); });
   refused("gray", [](MotionMaskFrame& frame) { frame.gray = cv::Mat(120, 161, CV_8UC1); });
   refused("gray", [](MotionMaskFrame& frame) { frame.gray = cv::Mat(120, 160, CV_8UC3); });
-  refused("labels", [](MotionMaskFrame& frame) { frame.labels = cv::Mat(60, 80, CV_8UC1); });
+  refused("labels",
+          [](MotionMaskFrame& frame) { frame.regions.labels = cv::Mat(60, 80, CV_8UC1); });
   const std::vector<PointLabel> verdicts(1);
   refused("verdicts", [&](MotionMaskFrame& frame) { frame.verdicts = verdicts; });
 }

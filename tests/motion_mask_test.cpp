@@ -198,7 +198,7 @@ TEST(MotionMask, ABoxNamesWhatStandsButDoesNotMakeItMove) {
     SlidingThing scene(k * kPeriod, 0.0, -0.2);
     const cv::Mat room = without.update(scene.frame()).label;
     const std::vector<DetectionBox> boxes = {scene.box()};
-    scene.frame().boxes = boxes;
+    scene.frame().regions = boxes;
     const cv::Mat named = with.update(scene.frame()).label;
     if (k > 0) {
       EXPECT_GT(shareOf(room, MaskLabel::kStatic, scene.truth()), 0.99);
@@ -216,8 +216,7 @@ TEST(MotionMask, ARegionOfALabelImageNamesItsPixels) {
   const std::vector<LabelRegion> regions = {{255}};
   for (int k = 0; k < 10; ++k) {
     SlidingThing scene(k * kPeriod, 0.0, -0.2);
-    scene.frame().labels = scene.truth();
-    scene.frame().regions = regions;
+    scene.frame().regions = Regions(scene.truth(), regions);
     const MotionMask& mask = estimator.update(scene.frame());
     if (k > 0) {
       EXPECT_DOUBLE_EQ(shareOf(mask.label, MaskLabel::kStanding, scene.truth()), 1.0);

@@ -240,7 +240,7 @@ MaskRunCounts writeMasks(const MaskRunOptions& options,
     input.timestamp = frame.timestamp;
     input.depth = frame.depth;
     input.gray = frame.gray;
-    input.boxes = frame_boxes;
+    input.regions = frame_boxes;
     const auto pose = poseAt(trajectory, frame.timestamp, options.max_pose_gap);
     input.pose_is_known = pose.has_value();
     if (pose) {

@@ -10,6 +10,7 @@
 
 #include <hmcdyn/detail/requirements.hpp>
 #include <hmcdyn/filter_stage.hpp>
+#include <hmcdyn/label_image.hpp>
 #include <hmcdyn/pose.hpp>
 #include <hmcdyn/regions.hpp>
 #include <hmcdyn/steps/ego_motion.hpp>
@@ -87,18 +88,12 @@ struct EarlierFrame {
 struct DynamicFeatureFilterInput {
   const FlowPyramid* pyramid = nullptr;  ///< Of the current gray image; not null.
   KeyPointsView points;                  ///< N key points of the current frame.
-  Span<const DetectionBox> boxes;        ///< Of the current frame.
+  Regions regions;                       ///< Of the current frame: boxes, or a mask.
   Span<const EarlierFrame> earlier;      ///< Frames to compare with; may be empty.
   PinholeCamera camera;                  ///< Needed where current_from_earlier is used.
   DepthImageView depth = {};             ///< Of the current frame (m); empty = no beliefs.
   /// `belief` of the result for earlier[0]; null = none.
   const MotionBelief* memory = nullptr;
-  /// Masks in place of boxes, which must be empty then: a label a pixel (CV_8UC1, CV_16UC1 or
-  /// CV_32SC1), of the image's size. Empty = boxes.
-  cv::Mat labels = {};
-  /// Which labels may move; each takes the place of a box, in this order. Labels without a region
-  /// are background.
-  Span<const LabelRegion> regions = {};
 };
 
 /// What one earlier frame contributed.

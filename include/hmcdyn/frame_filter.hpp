@@ -110,12 +110,6 @@ struct FrameInput {
   Span<const cv::Point2f> matched_pixels = {};
 };
 
-/// Masks in place of boxes: a label per pixel, and which labels may move.
-struct RegionMask {
-  cv::Mat labels;                    ///< CV_8UC1, CV_16UC1 or CV_32SC1, of the image's size.
-  std::vector<LabelRegion> regions;  ///< Labels without one are background.
-};
-
 /// How much a result is worth.
 enum class FrameFilterStatus : std::uint8_t {
   kFiltered,       ///< Compared with earlier frames.
@@ -186,18 +180,16 @@ class FrameFilter {
   FrameFilter(const FrameFilter&) = delete;
   FrameFilter& operator=(const FrameFilter&) = delete;
 
-  /// Filters the frame's key points by a detector's boxes, and remembers the frame.
+  /// Filters the frame's key points by a detector's boxes or a mask, and remembers the frame. By a
+  /// mask a point belongs to the region at its pixel; the background in a person's box is none of
+  /// it. Masks are not bridged.
   /// @throws std::invalid_argument for an image of the wrong type or size, arrays of unequal sizes,
-  /// or a bad option; the frame is then not remembered.
-  FrameFilterResult filter(const FrameInput& frame, Span<const DetectionBox> boxes);
+  /// boxes and a mask at once, or a bad option; the frame is then not remembered.
+  FrameFilterResult filter(const FrameInput& frame, const Regions& regions);
 
   /// The same where the detector has not said anything about this frame (it is slower than the
   /// camera): its last boxes are carried on, for two seconds at most.
   FrameFilterResult filter(const FrameInput& frame);
-
-  /// The same by a mask. A point belongs to the region at its pixel; the background in a person's
-  /// box is none of it. Masks are not bridged.
-  FrameFilterResult filter(const FrameInput& frame, const RegionMask& mask);
 
   /// Where the camera was in a frame that was filtered (camera from world), once it is tracked. A
   /// frame that has a pose already was moved with the world (a map correction), and so were those

@@ -11,6 +11,7 @@
 
 #include <hmcdyn/depth_error.hpp>
 #include <hmcdyn/detail/requirements.hpp>
+#include <hmcdyn/label_image.hpp>
 #include <hmcdyn/pose.hpp>
 #include <hmcdyn/regions.hpp>
 #include <hmcdyn/types.hpp>
@@ -53,11 +54,8 @@ struct MotionMaskFrame {
   /// Takes points of the world to the camera's frame (m), as everywhere in the library; any world
   /// that does not jump will do.
   Pose camera_from_world;
-  bool pose_is_known = true;            ///< False: the frame cannot be compared.
-  Span<const DetectionBox> boxes = {};  ///< Of things that may move; may be empty.
-  /// A label a pixel (CV_8UC1, CV_16UC1 or CV_32SC1, of the same size); may be empty.
-  cv::Mat labels = {};
-  Span<const LabelRegion> regions = {};  ///< Which labels are things that may move.
+  bool pose_is_known = true;             ///< False: the frame cannot be compared.
+  Regions regions = {};                  ///< Things that may move; may be empty.
   KeyPointsView points = {};             ///< Key points with a verdict; may be empty.
   Span<const PointLabel> verdicts = {};  ///< One a key point. kDynamic counts.
 };

@@ -64,7 +64,10 @@ FrameFilterResult filterFrame(SharedFilter& self, double timestamp, const ArrayL
   if (!boxes.is_none() && !labels.is_none()) {
     throw std::invalid_argument("boxes and labels are given; expected one of them");
   }
-  RegionMask mask{label_image.mat, regionsOf(regions)};
+  std::vector<LabelRegion> own_regions = regionsOf(regions);
+  if (regions.is_none() && !label_image.mat.empty()) {
+    own_regions = regionsIn(label_image.mat);
+  }
   FrameInput frame;
   frame.timestamp = timestamp;
   frame.gray = gray_image.mat;
@@ -77,18 +80,12 @@ FrameFilterResult filterFrame(SharedFilter& self, double timestamp, const ArrayL
     frame.predicted_pose = Pose(motionOf(predicted_pose, "predicted_pose"));
   }
   const bool is_silent = boxes.is_none() && labels.is_none();
-  const bool all_regions = regions.is_none();
   return self.with([&](FrameFilter& filter) {
     if (is_silent) {
       return filter.filter(frame);
     }
-    if (mask.labels.empty()) {
-      return filter.filter(frame, own_boxes);
-    }
-    if (all_regions) {
-      mask.regions = regionsIn(mask.labels);
-    }
-    return filter.filter(frame, mask);
+    return filter.filter(frame, label_image.mat.empty() ? Regions(own_boxes)
+                                                        : Regions(label_image.mat, own_regions));
   });
 }
 

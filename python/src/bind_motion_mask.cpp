@@ -32,9 +32,9 @@ MotionMask updateMask(SharedEstimator& self, double timestamp, const ArrayLike& 
   if (frame.pose_is_known) {
     frame.camera_from_world = motionOf(camera_from_world, "camera_from_world");
   }
-  frame.boxes = own_boxes;
-  frame.labels = label_image.mat;
-  frame.regions = own_regions;
+  frame.regions.boxes = own_boxes;
+  frame.regions.labels = label_image.mat;
+  frame.regions.labelled = own_regions;
   return self.with([&](MotionMaskEstimator& estimator) { return copyOf(estimator.update(frame)); });
 }
 

@@ -17,7 +17,7 @@ EVALUATION = [ROOT / "examples/evaluate" / f"{name}.hpp"
 
 # Structs that Python has in another form, or not.
 IN_ANOTHER_FORM = {
-    "FrameInput", "RegionMask", "MotionMaskFrame", "PoseObservations",  # arguments, see below
+    "FrameInput", "Regions", "MotionMaskFrame", "PoseObservations",  # arguments, see below
     "KeyPointsView", "KeyPoints", "PointPairsView", "MotionBeliefInput", "DynamicFeatureFilterInput", "EarlierFrame",
     "AteOptions", "RpeOptions",  # arguments
     "Span", "LabelImageView", "DepthImageView", "Pose", "PlainMatrix",  # arrays

@@ -48,7 +48,7 @@ void keepLarger(const std::vector<float>& candidate, std::vector<float>& distanc
 /// Whether distances are wanted: without a box, only what moved before can be dynamic.
 bool distancesWanted(const DynamicFeatureFilterInput& input,
                      const DynamicFeatureFilterOptions& options) {
-  return options.flow_background == 0 || !input.boxes.empty() ||
+  return options.flow_background == 0 || !input.regions.boxes.empty() ||
          (input.memory != nullptr &&
           std::any_of(input.memory->belief.begin(), input.memory->belief.end(),
                       [&](float belief) { return belief > options.belief.dynamic_belief; }));
@@ -119,7 +119,7 @@ std::vector<KnownMotion> knownMotionOf(const FlowSelection& selection,
                                        DynamicFeatureFilterWorkspace& workspace) {
   const PointPairsView pairs{flow.u, flow.v, input.points.u, input.points.v};
   if (input.memory == nullptr || !formsBeliefs(input, options) ||
-      backgroundSuffices(pairs, input.boxes, options.two_view)) {
+      backgroundSuffices(pairs, input.regions.boxes, options.two_view)) {
     return {};
   }
   FlowMatches chosen;
@@ -191,7 +191,7 @@ Comparison compareWithEarlier(const DynamicFeatureFilterInput& input,
   if (!distancesWanted(input, options)) {
     return result;
   }
-  result.followed = selectForFlow(input.points, input.boxes, imageSize(*input.pyramid),
+  result.followed = selectForFlow(input.points, input.regions.boxes, imageSize(*input.pyramid),
                                   budgetOf(options, formsBeliefs(input, options)));
   std::vector<KnownMotion> known;
   for (std::size_t k = 0; k < input.earlier.size(); ++k) {

@@ -107,7 +107,7 @@ DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,
                                                  const DynamicFeatureFilterOptions& options) {
   DynamicFeatureFilterInput input;
   input.points = points;
-  input.boxes = boxes;
+  input.regions = boxes;
   return filterTwoImages(earlier_gray, current_gray, input, options);
 }
 
@@ -121,8 +121,7 @@ DynamicFeatureFilterResult filterDynamicFeatures(const cv::Mat& earlier_gray,
   }
   DynamicFeatureFilterInput input;
   input.points = points;
-  input.labels = labels;
-  input.regions = regions;
+  input.regions = Regions(labels, regions);
   return filterTwoImages(earlier_gray, current_gray, input, options);
 }
 

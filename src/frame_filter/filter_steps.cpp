@@ -80,7 +80,7 @@ DynamicFeatureFilterResult judgeByDistance(const DynamicFeatureFilterInput& inpu
                                            const DynamicFeatureFilterOptions& options,
                                            DynamicFeatureFilterWorkspace& workspace) {
   DynamicFeatureFilterInput bounded = input;
-  bounded.boxes = regions.boxes;  // of a mask: where to look for motion, not what belongs to it
+  bounded.regions = regions.boxes;  // of a mask: where to look for motion, not what belongs to it
   Comparison comparison = compareWithEarlier(bounded, in_region, options, workspace);
   DynamicFeatureFilterResult result;
   result.distance = std::move(comparison.distance);

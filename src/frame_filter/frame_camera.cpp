@@ -21,9 +21,9 @@ namespace {
 constexpr float kMotionUncertainty = 8.0f;
 
 bool inAnyRegion(const DynamicFeatureFilterInput& input, std::size_t i) {
-  return std::any_of(input.boxes.begin(), input.boxes.end(), [&](const DetectionBox& box) {
-    return box.contains(input.points.u[i], input.points.v[i]);
-  });
+  return std::any_of(
+      input.regions.boxes.begin(), input.regions.boxes.end(),
+      [&](const DetectionBox& box) { return box.contains(input.points.u[i], input.points.v[i]); });
 }
 
 /// Whether the matches determine what the camera did: they are of the background, or known to be at
@@ -115,7 +115,7 @@ TwoViewEstimate modelOf(const CameraMotion& motion, const PointPairsView& pairs,
 void estimateCamera(const EarlierFrame& frame, const PointPairsView& pairs,
                     const std::vector<KnownMotion>& known, const DynamicFeatureFilterInput& input,
                     const DynamicFeatureFilterOptions& options, EarlierFrameReport& report) {
-  report.motion = estimateTwoViewModel(pairs, input.boxes, known, options.two_view);
+  report.motion = estimateTwoViewModel(pairs, input.regions.boxes, known, options.two_view);
   report.camera_known = isDetermined(report.motion);
   if (!options.require_known_camera || !frame.current_from_earlier ||
       !(input.camera.fx > 0.0 && input.camera.fy > 0.0)) {

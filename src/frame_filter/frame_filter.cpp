@@ -15,28 +15,20 @@
 
 namespace hmcdyn {
 
-FrameFilterResult FrameFilter::Memory::filter(const FrameInput& frame,
-                                              std::optional<Span<const DetectionBox>> detected,
-                                              const RegionMask* regions) {
+FrameFilterResult FrameFilter::Memory::filter(const FrameInput& frame, const Regions* detected) {
   internal::checkFrame(frame);
   history.checkSize(frame.gray.size());
-  if (regions != nullptr) {
-    internal::checkMask(frame, *regions);
+  if (detected != nullptr) {
+    internal::checkRegions(frame, *detected);
   }
   if (!history.follows(frame.timestamp)) {
     mask = nullptr;  // the one that is there is of another frame
-    return regions == nullptr
-               ? internal::notCompared(frame, detected.value_or(Span<const DetectionBox>{}),
-                                       options)
-               : internal::notCompared(frame, boundingBoxes(regions->labels, regions->regions),
-                                       options);
+    return internal::notCompared(frame, internal::namedBoxes(detected), options);
   }
 
   // What came in, and what it is compared with.
-  std::vector<DetectionBox> boxes;
-  if (regions == nullptr) {
-    boxes = bridge(frame, detected);
-  }
+  const bool by_mask = detected != nullptr && detected->byMask();
+  std::vector<DetectionBox> boxes = boxesOf(frame, detected);
   const KeyPoints points = internal::keyPointsOf(frame);
   internal::RememberedFrame current;
   current.timestamp = frame.timestamp;
@@ -54,12 +46,7 @@ FrameFilterResult FrameFilter::Memory::filter(const FrameInput& frame,
   input.camera = options.camera;
   input.depth = internal::viewOf(frame.depth);
   input.memory = past.empty() ? nullptr : &past.front()->belief;
-  if (regions == nullptr) {
-    input.boxes = boxes;
-  } else {
-    input.labels = regions->labels;
-    input.regions = regions->regions;
-  }
+  input.regions = by_mask ? *detected : Regions(boxes);
   internal::checkInput(input, steps);
   const internal::FrameRegions places = internal::regionsOf(input);
   const std::vector<std::uint8_t> in_region = internal::inRegion(places, points.size());
@@ -88,9 +75,8 @@ FrameFilterResult FrameFilter::Memory::filter(const FrameInput& frame,
   }
   current.belief = result.details.belief;
   history.add(std::move(current));
-  result.bridged = regions == nullptr && carrier ? carrier->bridged() : 0;
-  result.boxes =
-      regions == nullptr ? std::move(boxes) : boundingBoxes(regions->labels, regions->regions);
+  result.bridged = !by_mask && carrier ? carrier->bridged() : 0;
+  result.boxes = std::move(boxes);
   return internal::keepEnough(std::move(result), options);
 }
 
@@ -100,16 +86,12 @@ FrameFilter::~FrameFilter() = default;
 FrameFilter::FrameFilter(FrameFilter&& other) noexcept = default;
 FrameFilter& FrameFilter::operator=(FrameFilter&& other) noexcept = default;
 
-FrameFilterResult FrameFilter::filter(const FrameInput& frame, Span<const DetectionBox> boxes) {
-  return memory_->filter(frame, boxes, nullptr);
+FrameFilterResult FrameFilter::filter(const FrameInput& frame, const Regions& regions) {
+  return memory_->filter(frame, &regions);
 }
 
 FrameFilterResult FrameFilter::filter(const FrameInput& frame) {
-  return memory_->filter(frame, std::nullopt, nullptr);
-}
-
-FrameFilterResult FrameFilter::filter(const FrameInput& frame, const RegionMask& mask) {
-  return memory_->filter(frame, std::nullopt, &mask);
+  return memory_->filter(frame, nullptr);
 }
 
 void FrameFilter::setPose(double timestamp, const Pose& camera_from_world) {

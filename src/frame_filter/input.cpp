@@ -77,12 +77,26 @@ void checkFrame(const FrameInput& frame) {
   }
 }
 
-void checkMask(const FrameInput& frame, const RegionMask& mask) {
-  if (mask.labels.empty() || mask.labels.size() != frame.gray.size()) {
-    throw std::invalid_argument("FrameFilter: labels is " + imageText(mask.labels) +
+void checkRegions(const FrameInput& frame, const Regions& regions) {
+  if (regions.byMask() && !regions.boxes.empty()) {
+    throw std::invalid_argument("FrameFilter: " + std::to_string(regions.boxes.size()) +
+                                " boxes and a label image; expected one or the other");
+  }
+  if ((regions.byMask() || !regions.labelled.empty()) &&
+      regions.labels.size() != frame.gray.size()) {
+    throw std::invalid_argument("FrameFilter: labels is " + imageText(regions.labels) +
                                 "; expected the image's size, " + std::to_string(frame.gray.cols) +
                                 " x " + std::to_string(frame.gray.rows) + " px");
   }
+}
+
+std::vector<DetectionBox> namedBoxes(const Regions* regions) {
+  if (regions == nullptr) {
+    return {};
+  }
+  return regions->byMask()
+             ? boundingBoxes(regions->labels, regions->labelled)
+             : std::vector<DetectionBox>(regions->boxes.begin(), regions->boxes.end());
 }
 
 KeyPoints keyPointsOf(const FrameInput& frame) {
@@ -121,7 +135,7 @@ void giveMatches(const std::vector<const RememberedFrame*>& frames, double times
   }
 }
 
-FrameFilterResult notCompared(const FrameInput& frame, Span<const DetectionBox> boxes,
+FrameFilterResult notCompared(const FrameInput& frame, std::vector<DetectionBox> boxes,
                               const FrameFilterOptions& options) {
   const KeyPoints points = keyPointsOf(frame);
   FrameRegions regions;
@@ -137,7 +151,7 @@ FrameFilterResult notCompared(const FrameInput& frame, Span<const DetectionBox> 
   if (options.drop_boxes_without_history && options.rule != FilterRule::kNone) {
     dropRegions(in_region, result);
   }
-  result.boxes.assign(boxes.begin(), boxes.end());
+  result.boxes = std::move(boxes);
   return keepEnough(std::move(result), options);
 }
 

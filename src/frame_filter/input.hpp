@@ -17,8 +17,11 @@ FrameFilterOptions checked(FrameFilterOptions options);
 /// @throws std::invalid_argument for an image of the wrong type or size, or unequal arrays.
 void checkFrame(const FrameInput& frame);
 
-/// @throws std::invalid_argument unless the labels have the image's size.
-void checkMask(const FrameInput& frame, const RegionMask& mask);
+/// @throws std::invalid_argument for a mask beside boxes or of another size than the image.
+void checkRegions(const FrameInput& frame, const Regions& regions);
+
+/// The boxes, or those around a mask's regions; none where nobody said anything (null).
+std::vector<DetectionBox> namedBoxes(const Regions* regions);
 
 KeyPoints keyPointsOf(const FrameInput& frame);
 
@@ -35,7 +38,7 @@ void giveMatches(const std::vector<const RememberedFrame*>& frames, double times
                  const Pixels& matched, std::vector<EarlierFrame>& earlier);
 
 /// What becomes of a frame whose time stamp does not rise.
-FrameFilterResult notCompared(const FrameInput& frame, Span<const DetectionBox> boxes,
+FrameFilterResult notCompared(const FrameInput& frame, std::vector<DetectionBox> boxes,
                               const FrameFilterOptions& options);
 
 }  // namespace hmcdyn::internal

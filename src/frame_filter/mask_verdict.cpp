@@ -69,8 +69,6 @@ MotionMaskFrame maskFrameOf(const FrameInput& frame, const DynamicFeatureFilterI
   masked.gray = frame.gray;
   masked.camera_from_world = Pose(odometry);
   masked.pose_is_known = pose_is_known;
-  masked.boxes = input.boxes;
-  masked.labels = input.labels;
   masked.regions = input.regions;
   return masked;
 }

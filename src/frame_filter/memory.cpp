@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "frame_filter/input.hpp"
 #include "frame_filter/mask_verdict.hpp"
 
 namespace hmcdyn {
@@ -21,18 +22,22 @@ FrameFilter::Memory::Memory(FrameFilterOptions checked)
   }
 }
 
-std::vector<DetectionBox> FrameFilter::Memory::bridge(
-    const FrameInput& frame, std::optional<Span<const DetectionBox>> detected) {
+std::vector<DetectionBox> FrameFilter::Memory::boxesOf(const FrameInput& frame,
+                                                       const Regions* detected) {
+  std::vector<DetectionBox> boxes = internal::namedBoxes(detected);
+  if (detected != nullptr && detected->byMask()) {
+    return boxes;
+  }
   const std::size_t index = frames++;
+  if (!carrier) {
+    return boxes;
+  }
   std::optional<FrameDetection> said;
-  if (detected) {
-    said = FrameDetection{index, {detected->begin(), detected->end()}};
+  if (detected != nullptr) {
+    said = FrameDetection{index, std::move(boxes)};
   }
-  if (carrier) {
-    // The carrier keeps the depth image, and the caller's memory is the caller's.
-    return carrier->update({index, frame.timestamp, frame.gray, frame.depth.clone()}, said);
-  }
-  return said ? std::move(said->boxes) : std::vector<DetectionBox>{};
+  // The carrier keeps the depth image, and the caller's memory is the caller's.
+  return carrier->update({index, frame.timestamp, frame.gray, frame.depth.clone()}, said);
 }
 
 std::vector<const internal::RememberedFrame*> FrameFilter::Memory::framesBefore(

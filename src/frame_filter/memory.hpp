@@ -21,15 +21,12 @@ namespace hmcdyn {
 struct FrameFilter::Memory {
   explicit Memory(FrameFilterOptions checked);
 
-  /// The way of one frame. @param detected nothing = the detector has not answered. @param regions
-  /// in place of boxes; null = none.
-  FrameFilterResult filter(const FrameInput& frame,
-                           std::optional<Span<const DetectionBox>> detected,
-                           const RegionMask* regions);
+  /// The way of one frame. @param detected null = the detector has not answered.
+  FrameFilterResult filter(const FrameInput& frame, const Regions* detected);
 
-  /// The frame's boxes: what was detected, and what the carrier makes of it.
-  std::vector<DetectionBox> bridge(const FrameInput& frame,
-                                   std::optional<Span<const DetectionBox>> detected);
+  /// The frame's boxes: what was detected, and what the carrier makes of it; of a mask those around
+  /// its regions.
+  std::vector<DetectionBox> boxesOf(const FrameInput& frame, const Regions* detected);
 
   /// The frames to compare with; none for a rule that compares nothing.
   std::vector<const internal::RememberedFrame*> framesBefore(double timestamp) const;

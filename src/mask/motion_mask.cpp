@@ -43,10 +43,10 @@ void checkFrame(const MotionMaskFrame& frame) {
       (frame.gray.type() != CV_8UC1 || frame.gray.size() != frame.depth.size())) {
     refuse("gray", frame.gray, "CV_8UC1 of the depth's size, " + imageText(frame.depth));
   }
-  const int type = frame.labels.empty() ? CV_8UC1 : frame.labels.type();
-  if (!frame.labels.empty() && ((type != CV_8UC1 && type != CV_16UC1 && type != CV_32SC1) ||
-                                frame.labels.size() != frame.depth.size())) {
-    refuse("labels", frame.labels,
+  const int type = frame.regions.labels.empty() ? CV_8UC1 : frame.regions.labels.type();
+  if (!frame.regions.labels.empty() && ((type != CV_8UC1 && type != CV_16UC1 && type != CV_32SC1) ||
+                                        frame.regions.labels.size() != frame.depth.size())) {
+    refuse("labels", frame.regions.labels,
            "CV_8UC1, CV_16UC1 or CV_32SC1 of the depth's size, " + imageText(frame.depth));
   }
   checkKeyPoints(frame.points);

@@ -83,7 +83,7 @@ void nameBox(const PixelRange& range, const SmallFrame& small, float middle, flo
 void nameBoxes(const MotionMaskFrame& frame, const SmallFrame& small, int reduction,
                float box_depth, std::vector<std::uint8_t>& named, std::vector<float>& scratch) {
   std::vector<std::pair<float, PixelRange>> near_first;
-  for (const DetectionBox& box : frame.boxes) {
+  for (const DetectionBox& box : frame.regions.boxes) {
     PixelRange range{};
     if (rangeOf(box, small, reduction, range)) {
       near_first.emplace_back(middleDepth(range, small, named, scratch).value_or(kFarthest), range);
@@ -116,19 +116,19 @@ std::vector<std::uint8_t> namedPixels(const MotionMaskFrame& frame, const SmallF
                                       std::vector<float>& scratch) {
   std::vector<std::uint8_t> named = std::move(reuse);
   named.clear();
-  if (frame.boxes.empty() && frame.labels.empty()) {
+  if (frame.regions.boxes.empty() && frame.regions.labels.empty()) {
     return named;
   }
   named.assign(small.size(), 0);
   nameBoxes(frame, small, reduction, box_depth, named, scratch);
-  if (frame.labels.empty()) {
+  if (frame.regions.labels.empty()) {
     return named;
   }
   for (int y = 0; y < small.height; ++y) {
     for (int x = 0; x < small.width; ++x) {
-      const std::int64_t label =
-          labelAt(frame.labels, y * reduction + reduction / 2, x * reduction + reduction / 2);
-      if (std::any_of(frame.regions.begin(), frame.regions.end(),
+      const std::int64_t label = labelAt(frame.regions.labels, y * reduction + reduction / 2,
+                                         x * reduction + reduction / 2);
+      if (std::any_of(frame.regions.labelled.begin(), frame.regions.labelled.end(),
                       [&](const LabelRegion& region) { return region.label == label; })) {
         named[small.index(y, x)] = kNamed;
       }

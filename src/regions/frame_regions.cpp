@@ -14,16 +14,17 @@ namespace hmcdyn::internal {
 namespace {
 
 void checkLabels(const DynamicFeatureFilterInput& input) {
-  if (!input.boxes.empty()) {
-    throw std::invalid_argument("filterDynamicFeatures: " + std::to_string(input.boxes.size()) +
-                                " boxes and a label image; expected one or the other");
+  if (!input.regions.boxes.empty()) {
+    throw std::invalid_argument(
+        "filterDynamicFeatures: " + std::to_string(input.regions.boxes.size()) +
+        " boxes and a label image; expected one or the other");
   }
   const cv::Size image = input.pyramid->empty() ? cv::Size() : input.pyramid->front().size();
-  if (input.labels.size() != image) {
-    throw std::invalid_argument("filterDynamicFeatures: labels is " +
-                                std::to_string(input.labels.cols) + " x " +
-                                std::to_string(input.labels.rows) + " px; expected the image's " +
-                                std::to_string(image.width) + " x " + std::to_string(image.height));
+  if (input.regions.labels.size() != image) {
+    throw std::invalid_argument(
+        "filterDynamicFeatures: labels is " + std::to_string(input.regions.labels.cols) + " x " +
+        std::to_string(input.regions.labels.rows) + " px; expected the image's " +
+        std::to_string(image.width) + " x " + std::to_string(image.height));
   }
 }
 
@@ -31,20 +32,20 @@ void checkLabels(const DynamicFeatureFilterInput& input) {
 
 FrameRegions regionsOf(const DynamicFeatureFilterInput& input) {
   FrameRegions result;
-  result.by_mask = !input.labels.empty();
+  result.by_mask = input.regions.byMask();
   if (!result.by_mask) {
-    if (!input.regions.empty()) {
-      throw std::invalid_argument("filterDynamicFeatures: " + std::to_string(input.regions.size()) +
+    if (!input.regions.labelled.empty()) {
+      throw std::invalid_argument("filterDynamicFeatures: " + std::to_string(input.regions.labelled.size()) +
                                   " regions, but labels is empty; expected a label image");
     }
-    result.boxes.assign(input.boxes.begin(), input.boxes.end());
-    result.membership = assignToBoxes(input.points, input.boxes);
+    result.boxes.assign(input.regions.boxes.begin(), input.regions.boxes.end());
+    result.membership = assignToBoxes(input.points, input.regions.boxes);
     return result;
   }
   checkLabels(input);
-  result.boxes = boundingBoxes(input.labels, input.regions);
-  result.region = regionsOfPoints(input.points, input.labels, input.regions);
-  result.membership = assignToRegions(result.region, input.regions.size());
+  result.boxes = boundingBoxes(input.regions.labels, input.regions.labelled);
+  result.region = regionsOfPoints(input.points, input.regions.labels, input.regions.labelled);
+  result.membership = assignToRegions(result.region, input.regions.labelled.size());
   return result;
 }
 

@@ -79,7 +79,7 @@ TEST(FrameFilter, IsTheLibrarysCallWithTheRightFramesAndMemory) {
     DynamicFeatureFilterInput by_hand;
     by_hand.pyramid = &pyramids.back();
     by_hand.points = points.back().view();
-    by_hand.boxes = film.boxes;
+    by_hand.regions = film.boxes;
     by_hand.earlier = earlier;
     by_hand.depth = {input.depth.ptr<float>(), input.depth.cols, input.depth.rows,
                      input.depth.step1()};

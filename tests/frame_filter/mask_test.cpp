@@ -35,7 +35,7 @@ TEST(MaskFilter, TheWallBesideTheThingCountsFullyWhereABoxWouldDoubtIt) {
   FrameFilter by_box(withoutBeliefs());
   // When
   const FrameFilterResult mask =
-      filterFilm(by_mask, film, RegionMask{FilmedScene::maskOfThing(), kThing});
+      filterFilm(by_mask, film, Regions{FilmedScene::maskOfThing(), kThing});
   const FrameFilterResult box = filterFilm(by_box, film, film.boxes);
   // Then
   int in_box = 0;
@@ -55,7 +55,7 @@ TEST(MaskFilter, DropsWhatMovesWithBeliefs) {
   const FilmedScene film;
   FrameFilter filter;
   const FrameFilterResult result =
-      filterFilm(filter, film, RegionMask{FilmedScene::maskOfThing(), kThing});
+      filterFilm(filter, film, Regions{FilmedScene::maskOfThing(), kThing});
   int thing = 0;
   int kept_of_thing = 0;
   int walls = 0;
@@ -73,7 +73,7 @@ TEST(MaskFilter, AMaskThatFillsTheBoxGivesTheResultOfTheBox) {
   // Given
   const FilmedScene film;
   const DetectionBox& box = film.boxes.front();
-  RegionMask mask{cv::Mat::zeros(LayeredScene::kHeight, LayeredScene::kWidth, CV_16UC1), kThing};
+  Regions mask{cv::Mat::zeros(LayeredScene::kHeight, LayeredScene::kWidth, CV_16UC1), kThing};
   const cv::Point first(static_cast<int>(box.x_min), static_cast<int>(box.y_min));
   const cv::Point last(static_cast<int>(box.x_max), static_cast<int>(box.y_max));
   mask.labels(cv::Rect(first, last + cv::Point(1, 1))).setTo(7);
@@ -103,7 +103,7 @@ TEST(MaskFilter, WithoutALimitEveryPointOfARegionIsMeasured) {
   FrameFilter filter(options);
   // When
   const FrameFilterResult result =
-      filterFilm(filter, film, RegionMask{FilmedScene::maskOfThing(), kThing});
+      filterFilm(filter, film, Regions{FilmedScene::maskOfThing(), kThing});
   // Then
   int thing = 0;
   int measured = 0;
@@ -120,7 +120,7 @@ TEST(MaskFilter, ThePeersRulesFormNoBeliefs) {
   options.rule = FilterRule::kBox;
   FrameFilter filter(options);
   const FrameFilterResult result =
-      filterFilm(filter, film, RegionMask{FilmedScene::maskOfThing(), kThing});
+      filterFilm(filter, film, Regions{FilmedScene::maskOfThing(), kThing});
   EXPECT_EQ(result.details.belief.size(), 0U);
   for (std::size_t i = 0; i < film.points.size(); ++i) {
     EXPECT_EQ(result.keep[i], film.isThing(i) ? 0 : 1) << "point " << i;
@@ -130,8 +130,7 @@ TEST(MaskFilter, ThePeersRulesFormNoBeliefs) {
 TEST(MaskFilter, AMaskWithoutTheRegionsKeepsEverything) {
   const FilmedScene film;
   FrameFilter filter;
-  const RegionMask mask{cv::Mat::zeros(LayeredScene::kHeight, LayeredScene::kWidth, CV_8UC1),
-                        kThing};
+  const Regions mask{cv::Mat::zeros(LayeredScene::kHeight, LayeredScene::kWidth, CV_8UC1), kThing};
   const FrameFilterResult result = filterFilm(filter, film, mask);
   EXPECT_EQ(result.keep, std::vector<std::uint8_t>(film.points.size(), 1));
 }
@@ -140,9 +139,7 @@ TEST(MaskFilter, RefusesAMaskOfAnotherSizeOrType) {
   const FilmedScene film;
   FrameFilter filter;
   const auto refusal = [&](const cv::Mat& labels) {
-    return test::invalidArgumentOf([&] {
-      filter.filter(film.input(0), RegionMask{labels, kThing});
-    });
+    return test::invalidArgumentOf([&] { filter.filter(film.input(0), Regions{labels, kThing}); });
   };
   EXPECT_THAT(refusal(cv::Mat::zeros(10, 10, CV_8UC1)), testing::HasSubstr("labels is 10 x 10"));
   EXPECT_NE(refusal(cv::Mat::zeros(LayeredScene::kHeight, LayeredScene::kWidth, CV_32FC1)),

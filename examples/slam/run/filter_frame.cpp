@@ -47,9 +47,8 @@ FrameFilterResult filterFrame(const RgbdFrame& image, const std::vector<Detectio
   if (const std::optional<MotionPrediction> expected = tracker.predict(image.timestamp)) {
     input.predicted_pose = Pose(expected->camera_from_world);
   }
-  FrameFilterResult result = mask.empty()
-                                 ? filter.filter(input, boxes)
-                                 : filter.filter(input, RegionMask{mask.labels, mask.regions});
+  FrameFilterResult result =
+      filter.filter(input, mask.empty() ? Regions(boxes) : Regions(mask.labels, mask.regions));
   frame.label = result.label;
   frame.weight = result.weight;
   frame.lambda = result.lambda;

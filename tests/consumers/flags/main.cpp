@@ -127,7 +127,7 @@ bool filterFrames() {
     hmcdyn::DynamicFeatureFilterInput input;
     input.pyramid = &pyramids.back();
     input.points = points.view();
-    input.boxes = boxes;
+    input.regions = boxes;
     input.earlier = earlier;
     input.camera = kCamera;
     input.depth = {images.back().depth.ptr<float>(), kWidth, kHeight,
