@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "fault_input.hpp"
@@ -118,6 +119,23 @@ TEST_F(Boxes, EachRuleThatLeavesOutABoxIsCounted) {
   EXPECT_EQ(boxes.counts.other_time, 1U);
   EXPECT_TRUE(oneMentions(boxes.notes, {"7 of 10 boxes are left out", "1 outside the image",
                                         "2 of classes", "1 with a score below"}));
+}
+
+TEST_F(Boxes, OfThousandsAtOneTimeTheStrongestStay) {
+  // 1000 boxes of rising score at one time, and one box at a later one
+  std::string text = "1000.1 person 10 20 90 200 0.3\n";
+  for (int i = 0; i < 1000; ++i) {
+    text += fmt::format("1000.0 person {} {} {} 200 {:.4f}\n", i % 300, i % 100, i % 300 + 90,
+                        0.3 + 0.0005 * i);
+  }
+  const BoxReview boxes = review(text);
+  EXPECT_EQ(boxes.counts.weaker, 700U);
+  ASSERT_EQ(boxes.kept.size(), 301U);
+  EXPECT_NEAR(boxes.kept[0].box.score, 0.65f, 1e-4f);
+  EXPECT_NEAR(boxes.kept[299].box.score, 0.7995f, 1e-4f);
+  EXPECT_EQ(boxes.kept[300].timestamp, 1000.1);
+  EXPECT_TRUE(oneMentions(boxes.notes, {"700 of 1001 boxes are left out",
+                                        "700 beyond the 300 strongest of their time stamp"}));
 }
 
 TEST_F(Boxes, NothingIsSaidOfAFileWithBoxesOfOtherThingsAsDetectorsWriteThem) {

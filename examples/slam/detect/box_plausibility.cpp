@@ -5,11 +5,13 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "slam/detect/box_notes.hpp"
 #include "slam/detect/box_selection.hpp"
 #include "slam/detect/coco_classes.hpp"
 #include "support/time_stamps.hpp"
@@ -38,27 +40,6 @@ bool isBeyond(const DetectionBox& box, cv::Size image) {
   constexpr float kAtMost = 1.05f;  // image sides
   return image.area() > 0 && (box.x_max > kAtMost * static_cast<float>(image.width) ||
                               box.y_max > kAtMost * static_cast<float>(image.height));
-}
-
-/// Whether corners lie in the image, give or take 2 % of it.
-bool fits(float x_min, float y_min, float x_max, float y_max, cv::Size image) {
-  const float across = 0.02f * static_cast<float>(image.width);
-  const float down = 0.02f * static_cast<float>(image.height);
-  return x_min <= x_max && y_min <= y_max && x_min >= -across && y_min >= -down &&
-         x_max <= static_cast<float>(image.width) + across &&
-         y_max <= static_cast<float>(image.height) + down;
-}
-
-template <class Fits>
-bool allFit(const std::vector<TimedBox>& boxes, cv::Size image, const Fits& asIf) {
-  return image.area() > 0 && std::all_of(boxes.begin(), boxes.end(),
-                                         [&](const TimedBox& timed) { return asIf(timed.box); });
-}
-
-bool allFitAsSize(const std::vector<TimedBox>& boxes, cv::Size image) {
-  return allFit(boxes, image, [image](const DetectionBox& box) {
-    return fits(box.x_min, box.y_min, box.x_min + box.x_max, box.y_min + box.y_max, image);
-  });
 }
 
 /// In which other order of four numbers all boxes fit the image; empty where in none.
@@ -232,128 +213,6 @@ std::string classesIn(const std::vector<TimedBox>& boxes) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Boxes of a larger image lie partly in a smaller one.
-void noteAnotherSize(const BoxCounts& counts, cv::Size image, const std::filesystem::path& file,
-                     BoxReview& review) {
-  if (2 * (counts.beyond + counts.outside) > counts.in_file) {
-    review.notes.push_back(fmt::format(
-        "{}: {} of {} boxes reach beyond the image of {} x {}; are they of images of another size?",
-        file.string(), counts.beyond + counts.outside, counts.in_file, image.width, image.height));
-  }
-}
-
-/// Corners with y first mostly lie in the image, too, but people in them lie down.
-void noteSwappedAxes(const std::vector<TimedBox>& boxes, cv::Size image,
-                     const std::filesystem::path& file, BoxReview& review) {
-  const bool fit_with_y_first = allFit(boxes, image, [image](const DetectionBox& box) {
-    return fits(box.y_min, box.x_min, box.y_max, box.x_max, image);
-  });
-  constexpr std::size_t kLeast = 5;  // boxes
-  constexpr float kLying = 1.5f;     // width to height
-  std::size_t people = 0;
-  std::size_t lying = 0;
-  for (const TimedBox& timed : boxes) {
-    const DetectionBox& box = timed.box;
-    people += box.class_id == kPersonClassId ? 1 : 0;
-    const bool wide = box.x_max - box.x_min > kLying * (box.y_max - box.y_min);
-    lying += box.class_id == kPersonClassId && wide ? 1 : 0;
-  }
-  if (fit_with_y_first && people >= kLeast && 2 * lying > people) {
-    review.notes.push_back(fmt::format(
-        "{}: {} of the {} boxes of people are more than {:g} times as wide as high; are their "
-        "corners in the order y_min x_min y_max x_max? expected x first",
-        file.string(), lying, people, kLying));
-  }
-}
-
-/// Median deviation from the median of what `value` gives of each box; not for none.
-template <class Value>
-float spreadOf(const std::vector<TimedBox>& boxes, const Value& value) {
-  std::vector<float> values;
-  values.reserve(boxes.size());
-  for (const TimedBox& timed : boxes) {
-    values.push_back(value(timed.box));
-  }
-  const auto middle = [](std::vector<float>& of) {
-    const auto at = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
-    std::nth_element(of.begin(), at, of.end());
-    return *at;
-  };
-  const float median = middle(values);
-  for (float& deviation : values) {
-    deviation = std::abs(deviation - median);
-  }
-  return middle(values);
-}
-
-/// Where a person crosses the image the corners go along, and width and height stay.
-void noteSizes(const std::vector<TimedBox>& boxes, cv::Size image,
-               const std::filesystem::path& file, BoxReview& review) {
-  constexpr std::size_t kLeast = 10;  // boxes
-  constexpr float kMuchLess = 0.5f;   // of two corners that are found apart it is 0.7 or more
-  if (boxes.size() < kLeast || !allFitAsSize(boxes, image)) {
-    return;
-  }
-  const float of_last = spreadOf(boxes, [](const DetectionBox& box) { return box.x_max; }) +
-                        spreadOf(boxes, [](const DetectionBox& box) { return box.y_max; });
-  const float of_sides =
-      spreadOf(boxes, [](const DetectionBox& box) { return box.x_max - box.x_min; }) +
-      spreadOf(boxes, [](const DetectionBox& box) { return box.y_max - box.y_min; });
-  if (of_last < kMuchLess * of_sides) {
-    review.notes.push_back(fmt::format(
-        "{}: all boxes fit as x y width height, too, and their last two numbers stay while the "
-        "first two change; are they sizes? expected x_min y_min x_max y_max",
-        file.string()));
-  }
-}
-
-/// Boxes found in images of half the size.
-void noteUpperLeftQuarter(const std::vector<TimedBox>& boxes, cv::Size image,
-                          const std::filesystem::path& file, BoxReview& review) {
-  constexpr std::size_t kLeast = 20;  // boxes
-  if (boxes.size() < kLeast || image.area() == 0) {
-    return;
-  }
-  float right = 0.0f;
-  float bottom = 0.0f;
-  for (const TimedBox& timed : boxes) {
-    right = std::max(right, timed.box.x_max / static_cast<float>(image.width));
-    bottom = std::max(bottom, timed.box.y_max / static_cast<float>(image.height));
-  }
-  const auto reaches_half = [](float share) { return share > 0.4f && share < 0.52f; };
-  if (reaches_half(right) && reaches_half(bottom)) {
-    review.notes.push_back(fmt::format(
-        "{}: all {} boxes lie in the upper left quarter of the image of {} x {}, up to its middle; "
-        "are they of images of half the size?",
-        file.string(), boxes.size(), image.width, image.height));
-  }
-}
-
-/// Several boxes around one thing at one time: of several frames, or as before suppression.
-void noteCoinciding(const std::vector<TimedBox>& boxes, const std::filesystem::path& file,
-                    BoxReview& review) {
-  constexpr std::size_t kLeast = 5;      // boxes
-  constexpr std::size_t kCompared = 20;  // with those that follow
-  constexpr float kOneThing = 0.7f;      // intersection over union
-  std::size_t coinciding = 0;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    for (std::size_t j = i + 1;
-         j < boxes.size() && j <= i + kCompared && boxes[j].timestamp == boxes[i].timestamp; ++j) {
-      if (boxes[i].box.class_id == boxes[j].box.class_id &&
-          intersectionOverUnion(boxes[i].box, boxes[j].box) > kOneThing) {
-        ++coinciding;
-        break;
-      }
-    }
-  }
-  if (coinciding >= kLeast && 3 * coinciding > boxes.size()) {
-    review.notes.push_back(fmt::format(
-        "{}: {} of {} boxes nearly coincide with another of the same time stamp and class; were "
-        "the time stamps rounded, or the boxes written before suppression (NMS)?",
-        file.string(), coinciding, boxes.size()));
-  }
-}
-
 void noteWhatIsLeftOut(const std::vector<TimedBox>& boxes, const DetectorOptions& options,
                        const std::filesystem::path& file, BoxReview& review) {
   const BoxCounts& counts = review.counts;
@@ -372,7 +231,11 @@ void noteWhatIsLeftOut(const std::vector<TimedBox>& boxes, const DetectorOptions
   rule(counts.other_time,
        fmt::format("without a frame within {:g} s of their time stamp{}", options.time_tolerance,
                    2 * counts.other_time > counts.in_file ? guessOfStamps(boxes) : ""));
-  const std::size_t odd = counts.shares + counts.inverted + counts.outside + counts.other_time;
+  rule(counts.weaker, fmt::format("beyond the {} strongest of their time stamp (boxes before "
+                                  "suppression, NMS?)",
+                                  kMostBoxes));
+  const std::size_t odd =
+      counts.shares + counts.inverted + counts.outside + counts.other_time + counts.weaker;
   const bool notable = odd > 0 || (counts.kept == 0 && counts.in_file > 0);
   if (notable) {
     review.notes.push_back(
@@ -382,6 +245,34 @@ void noteWhatIsLeftOut(const std::vector<TimedBox>& boxes, const DetectorOptions
                         ? fmt::format("; the file has the classes {}", classesIn(boxes))
                         : ""));
   }
+}
+
+/// The kMostBoxes strongest of each time stamp, in the order that they had.
+std::vector<TimedBox> strongestOfEachTime(std::vector<TimedBox> boxes, BoxCounts& counts) {
+  std::map<double, std::vector<std::size_t>> of_time;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    of_time[boxes[i].timestamp].push_back(i);
+  }
+  std::vector<std::uint8_t> stays(boxes.size(), 1);
+  for (auto& [time, indices] : of_time) {
+    if (indices.size() <= kMostBoxes) {
+      continue;
+    }
+    std::stable_sort(indices.begin(), indices.end(), [&](std::size_t a, std::size_t b) {
+      return boxes[a].box.score > boxes[b].box.score;
+    });
+    for (std::size_t k = kMostBoxes; k < indices.size(); ++k) {
+      stays[indices[k]] = 0;
+      ++counts.weaker;
+    }
+  }
+  std::vector<TimedBox> kept;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (stays[i] != 0) {
+      kept.push_back(boxes[i]);
+    }
+  }
+  return kept;
 }
 
 }  // namespace
@@ -408,17 +299,14 @@ BoxReview reviewBoxes(const std::vector<TimedBox>& boxes, const DetectorOptions&
       review.kept.push_back(timed);
     }
   }
+  review.kept = strongestOfEachTime(std::move(review.kept), counts);
   counts.kept = review.kept.size();
   if (!possible.empty() && nearest > options.time_tolerance) {
     refuse(file, fmt::format("no box is within {:g} s of a frame, the nearest is {:.6f} s away; "
                              "are the time stamps those of the colour images?",
                              options.time_tolerance, nearest));
   }
-  noteAnotherSize(counts, frames.image, file, review);
-  noteSwappedAxes(possible, frames.image, file, review);
-  noteSizes(possible, frames.image, file, review);
-  noteUpperLeftQuarter(possible, frames.image, file, review);
-  noteCoinciding(possible, file, review);
+  noteDoubtful(possible, frames.image, file, review);
   noteWhatIsLeftOut(boxes, options, file, review);
   return review;
 }

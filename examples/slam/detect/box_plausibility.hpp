@@ -13,6 +13,10 @@
 
 namespace hmcdyn::slam {
 
+/// More boxes than this at one time are no detector's answer: COCO's own evaluation takes 100. What
+/// follows compares boxes with each other, so it must be bounded.
+inline constexpr std::size_t kMostBoxes = 300;
+
 /// A box with the time stamp (s) of its image.
 struct TimedBox {
   double timestamp = 0.0;
@@ -29,6 +33,7 @@ struct BoxCounts {
   std::size_t low_score = 0;    ///< Below the threshold.
   std::size_t beyond = 0;       ///< Of those left: 5 % of the image farther than its border.
   std::size_t other_time = 0;   ///< No frame within the tolerance of the time stamp.
+  std::size_t weaker = 0;       ///< Beyond kMostBoxes of one time stamp, by score.
   std::size_t kept = 0;
 };
 

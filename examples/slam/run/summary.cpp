@@ -330,7 +330,8 @@ nlohmann::json toJson(const RunCounts& counts) {
             {"outside", counts.box_file.outside},
             {"other_class", counts.box_file.other_class},
             {"low_score", counts.box_file.low_score},
-            {"other_time", counts.box_file.other_time}}},
+            {"other_time", counts.box_file.other_time},
+            {"weaker", counts.box_file.weaker}}},
           {"dense_map_points", counts.map_points},
           {"stopped_by_signal", counts.stopped},
           {"write_failures", counts.write_failures}};
