@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -327,6 +328,34 @@ TEST(OpticalFlow, RepeatsBitForBit) {
     }
   }
   EXPECT_EQ(first.found, second.found);
+}
+
+TEST(OpticalFlow, AReusedPyramidIsAsAFreshOne) {
+  // Of the same image size, whose memory serves again, and of another size, window and depth
+  const OpticalFlowOptions options = fixedOptions();
+  const cv::Mat image = movedTexture(3.3, -2.1);
+  const FlowPyramid fresh = buildFlowPyramid(image, options);
+  OpticalFlowOptions others = options;
+  others.window = 11;
+  others.max_level = 1;
+  const cv::Mat wide(kHeight, 2 * kWidth, CV_8UC1, cv::Scalar(9));
+  FlowPyramid same_size = buildFlowPyramid(movedTexture(0, 0), options);
+  const unsigned char* memory = same_size.front().data;
+  std::vector<FlowPyramid> reused;
+  reused.push_back(buildFlowPyramid(image, options, std::move(same_size)));
+  reused.push_back(buildFlowPyramid(image, options, buildFlowPyramid(wide, others)));
+  EXPECT_EQ(reused.front().front().data, memory);
+  for (const FlowPyramid& pyramid : reused) {
+    ASSERT_EQ(pyramid.size(), fresh.size());
+    for (std::size_t level = 0; level < fresh.size(); ++level) {
+      ASSERT_EQ(pyramid[level].size(), fresh[level].size());
+      EXPECT_EQ(cv::norm(pyramid[level], fresh[level], cv::NORM_INF), 0.0) << level;
+    }
+    const KeyPoints points = gridPoints(30);
+    const FlowPyramid earlier = buildFlowPyramid(movedTexture(0, 0), options);
+    EXPECT_EQ(trackIntoEarlierFrame(pyramid, earlier, points.view(), options).found,
+              trackIntoEarlierFrame(fresh, earlier, points.view(), options).found);
+  }
 }
 
 TEST(OpticalFlow, OtherImagesAreRefused) {
