@@ -204,7 +204,7 @@ MapCopy MapCopier::copy(const Map& map, std::vector<LoopConstraint> loops) {
   for (const MapPoint& point : map.points()) {
     copy.point_position.push_back(point.position);
     copy.point_depth_offset.push_back(point.depth_offset);
-    copy.point_trusted.push_back(point.belief.log_odds >= map.options().belief.trust ? 1 : 0);
+    copy.point_trusted.push_back(point.trust.log_odds >= map.options().trust.threshold ? 1 : 0);
   }
   return copy;
 }

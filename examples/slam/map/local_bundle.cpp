@@ -23,7 +23,7 @@ std::vector<int> freeKeyFrames(const Map& map, std::size_t most) {
 
 bool takesPart(const MapPoint& point, const Map& map, const LocalBundleOptions& options) {
   return !point.removed && point.observations.size() >= options.min_observations &&
-         point.belief.log_odds >= map.options().belief.trust;
+         point.trust.log_odds >= map.options().trust.threshold;
 }
 
 /// Key frames, other than the free ones, that see most of the points.

@@ -26,11 +26,11 @@ Eigen::Vector3d worldPoint(const Frame& frame, std::size_t key_point, const Pinh
 
 }  // namespace
 
-void Map::count(int point, bool found, const StaticEvidence& evidence) {
+void Map::count(int point, bool found, const LandmarkSighting& evidence) {
   if (MapPoint* entry = points_.find(point)) {
     ++entry->visible;
     entry->found += found ? 1 : 0;
-    entry->belief.update(evidence, options_.belief);
+    entry->trust.update(evidence, options_.trust);
   }
 }
 
@@ -41,7 +41,7 @@ MapPoint Map::describe(const Frame& frame, std::size_t key_point,
   entry.descriptor = descriptorOf(frame, key_point);
   entry.octave = frame.features.key_points[key_point].octave;
   entry.distance = (frame.camera_from_world * position).norm();
-  entry.belief.log_odds = options_.belief.prior;
+  entry.trust.log_odds = options_.trust.prior;
   return entry;
 }
 
@@ -248,7 +248,7 @@ void Map::cullPoints() {
                               static_cast<double>(point.found) <
                                   options_.min_found_share * static_cast<double>(point.visible);
     return point.observations.empty() || rarely_found ||
-           point.belief.log_odds < options_.belief.removal;
+           point.trust.log_odds < options_.trust.removal;
   };
   for (const int point : points_.where(useless)) {
     removePoint(point);

@@ -13,9 +13,9 @@
 #include <hmcdyn/types.hpp>
 
 #include "slam/features/frame.hpp"
+#include "slam/map/landmark_trust.hpp"
 #include "slam/map/map_point.hpp"
 #include "slam/map/point_table.hpp"
-#include "slam/map/static_belief.hpp"
 
 namespace hmcdyn::slam {
 
@@ -43,7 +43,7 @@ struct MapOptions {
   /// A map point is removed when it was found in fewer than this share of the frames that should
   /// have seen it.
   double min_found_share = 0.25;
-  StaticBeliefOptions belief;
+  LandmarkTrustOptions trust;
   /// A key frame is superfluous when this share of its points has more observers than this. What it
   /// saw is lost to later adjustments, so that three (as in ORB-SLAM) cost accuracy.
   double superfluous_share = 0.9;
@@ -75,7 +75,7 @@ class Map {
   const std::vector<KeyFrame>& keyFrames() const noexcept { return key_frames_; }
 
   /// A frame should have seen the point: whether it was found, and what the filter said of it.
-  void count(int point, bool found, const StaticEvidence& evidence);
+  void count(int point, bool found, const LandmarkSighting& evidence);
 
   /// Makes a key frame: matched points take up its observation, and static key points with depth
   /// become new points. A key point in a person's box becomes one only where the filter placed it

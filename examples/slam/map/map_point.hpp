@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "slam/map/static_belief.hpp"
+#include "slam/map/landmark_trust.hpp"
 
 namespace hmcdyn::slam {
 
@@ -35,7 +35,7 @@ struct MapPoint {
   std::vector<Observation> observations;
   std::size_t visible = 0;  ///< Frames in which it should have been seen.
   std::size_t found = 0;    ///< Frames in which it was matched and agreed.
-  StaticBelief belief;      ///< That it stands still.
+  LandmarkTrust trust;      ///< That it stands still.
   bool removed = false;
 };
 

@@ -146,7 +146,7 @@ ProjectionSearch matchByProjection(const Frame& frame, const KeyPointGrid& grid,
       continue;
     }
     const bool trusted = policy == MatchPolicy::kTrustedPoints &&
-                         point.belief.log_odds >= map.options().belief.trust;
+                         point.trust.log_odds >= map.options().trust.threshold;
     if (frame.weight[best.key_point] > 0.0f || trusted) {
       claim(by_key_point, {id, best.key_point, best.distance});
     } else {

@@ -215,7 +215,7 @@ void Tracker::countSightings(const Frame& frame, const ProjectionSearch& search)
   const std::unordered_set<int> dynamic(search.seen_dynamic.begin(), search.seen_dynamic.end());
   for (const int point : search.visible) {
     const auto found = key_point_of.find(point);
-    StaticEvidence evidence;
+    LandmarkSighting evidence;
     evidence.agrees = found != key_point_of.end();
     if (dynamic.count(point) != 0) {
       evidence.label = PointLabel::kDynamic;

@@ -98,7 +98,7 @@ TEST(LoopSnapshotOfMap, HoldsKeyFramesPointsAndTrustedSightings) {
     tour.step();
   }
   // One point loses its trust, but stays.
-  while (tour.map.points()[0].belief.log_odds >= tour.map.options().belief.trust) {
+  while (tour.map.points()[0].trust.log_odds >= tour.map.options().trust.threshold) {
     tour.map.count(0, true, {PointLabel::kDynamic, 0.0f, true});
   }
   const LoopSnapshot snapshot = toSnapshot(MapCopier().copy(tour.map, {}));

@@ -280,7 +280,7 @@ TEST(Map, APointThatIsOftenCalledDynamicIsRemoved) {
   Map map(kCamera, {});
   map.insertKeyFrame(room.see(0, movedBy(0.0, 0.0)));
   for (int k = 0; k < 6; ++k) {
-    StaticEvidence half;  // half of its sightings
+    LandmarkSighting half;  // half of its sightings
     half.label = k % 2 == 0 ? PointLabel::kDynamic : PointLabel::kStatic;
     map.count(0, true, half);
     map.count(1, true, {});
