@@ -178,11 +178,11 @@ bool formsBeliefs(const DynamicFeatureFilterInput& input,
   return options.use_belief && options.stage.rule == FilterRule::kHmc && !input.depth.empty();
 }
 
-Comparison compareWithEarlier(const DynamicFeatureFilterInput& input,
+FrameComparison compareFrames(const DynamicFeatureFilterInput& input,
                               Span<const std::uint8_t> in_region,
                               const DynamicFeatureFilterOptions& options,
                               DynamicFeatureFilterWorkspace& workspace) {
-  Comparison result;
+  FrameComparison result;
   result.distance.assign(input.points.size(), kNaN);
   if (formsBeliefs(input, options)) {
     workspace.belief.surface = surfaceDepths(input.depth, input.points.u, input.points.v,

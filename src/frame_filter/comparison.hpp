@@ -14,7 +14,7 @@
 namespace hmcdyn::internal {
 
 /// A frame against the earlier ones.
-struct Comparison {
+struct FrameComparison {
   FlowSelection followed;                   ///< The points that flow followed.
   std::vector<EarlierFrameReport> earlier;  ///< One an earlier frame.
   std::vector<float> distance;              ///< N distances (px), the largest; NaN = none.
@@ -26,7 +26,7 @@ bool formsBeliefs(const DynamicFeatureFilterInput& input,
 
 /// Finds the points' surfaces first, where beliefs are formed; they stay in the workspace.
 /// @param input checked; its boxes are where to look for motion. @param in_region N flags.
-Comparison compareWithEarlier(const DynamicFeatureFilterInput& input,
+FrameComparison compareFrames(const DynamicFeatureFilterInput& input,
                               Span<const std::uint8_t> in_region,
                               const DynamicFeatureFilterOptions& options,
                               DynamicFeatureFilterWorkspace& workspace);

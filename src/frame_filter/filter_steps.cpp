@@ -81,7 +81,7 @@ DynamicFeatureFilterResult judgeByDistance(const DynamicFeatureFilterInput& inpu
                                            DynamicFeatureFilterWorkspace& workspace) {
   DynamicFeatureFilterInput bounded = input;
   bounded.regions = regions.boxes;  // of a mask: where to look for motion, not what belongs to it
-  Comparison comparison = compareWithEarlier(bounded, in_region, options, workspace);
+  FrameComparison comparison = compareFrames(bounded, in_region, options, workspace);
   DynamicFeatureFilterResult result;
   result.distance = std::move(comparison.distance);
   result.earlier = std::move(comparison.earlier);

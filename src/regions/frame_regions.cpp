@@ -35,8 +35,9 @@ FrameRegions regionsOf(const DynamicFeatureFilterInput& input) {
   result.by_mask = input.regions.byMask();
   if (!result.by_mask) {
     if (!input.regions.labelled.empty()) {
-      throw std::invalid_argument("filterDynamicFeatures: " + std::to_string(input.regions.labelled.size()) +
-                                  " regions, but labels is empty; expected a label image");
+      throw std::invalid_argument(
+          "filterDynamicFeatures: " + std::to_string(input.regions.labelled.size()) +
+          " regions, but labels is empty; expected a label image");
     }
     result.boxes.assign(input.regions.boxes.begin(), input.regions.boxes.end());
     result.membership = assignToBoxes(input.points, input.regions.boxes);
