@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
+
+#include <opencv2/core.hpp>
 
 #include "frame_filter/comparison.hpp"
 #include "regions/frame_regions.hpp"
@@ -73,6 +77,61 @@ MotionBelief doubted(MotionBelief belief, Span<const std::uint8_t> in_region,
 }
 
 }  // namespace
+
+void checkInput(const DynamicFeatureFilterInput& input,
+                const DynamicFeatureFilterOptions& options) {
+  if (input.pyramid == nullptr) {
+    throw std::invalid_argument("filterDynamicFeatures: pyramid of the current frame is null");
+  }
+  if (options.flow_background < 0 || options.flow_in_boxes < 0 || !(options.flow_margin >= 0.0f)) {
+    throw std::invalid_argument("DynamicFeatureFilterOptions: flow_background is " +
+                                std::to_string(options.flow_background) + ", flow_in_boxes " +
+                                std::to_string(options.flow_in_boxes) + ", flow_margin " +
+                                std::to_string(options.flow_margin) +
+                                "; expected counts and a margin (px) >= 0");
+  }
+  const cv::Size image = input.pyramid->empty() ? cv::Size() : input.pyramid->front().size();
+  const bool depth_fits = input.depth.width == image.width && input.depth.height == image.height;
+  if (!input.depth.empty() && !input.pyramid->empty() && !depth_fits) {
+    throw std::invalid_argument("filterDynamicFeatures: depth is " +
+                                std::to_string(input.depth.width) + " x " +
+                                std::to_string(input.depth.height) + " px; expected the image's " +
+                                std::to_string(image.width) + " x " + std::to_string(image.height));
+  }
+  for (const EarlierFrame& frame : input.earlier) {
+    if (frame.pyramid == nullptr) {
+      throw std::invalid_argument("filterDynamicFeatures: pyramid of an earlier frame is null");
+    }
+    if (frame.pyramid->empty() || input.pyramid->empty() ||
+        frame.pyramid->front().size() != input.pyramid->front().size()) {
+      throw std::invalid_argument(
+          "filterDynamicFeatures: expected pyramids of one image size, as buildFlowPyramid makes");
+    }
+    const std::size_t matched = frame.matched_u.size();
+    if (frame.matched_v.size() != matched || (matched != 0 && matched != input.points.size())) {
+      throw std::invalid_argument("filterDynamicFeatures: matched_u has " +
+                                  std::to_string(matched) + " elements, matched_v " +
+                                  std::to_string(frame.matched_v.size()) +
+                                  "; expected none, or one for each of the " +
+                                  std::to_string(input.points.size()) + " key points");
+    }
+    if (options.distance == DistanceKind::kTwoView) {
+      continue;
+    }
+    const bool has_depth =
+        frame.depth.type() == CV_32FC1 && !frame.depth.empty() &&
+        (frame.pyramid->empty() || frame.depth.size() == frame.pyramid->front().size());
+    if (!frame.current_from_earlier || !has_depth) {
+      throw std::invalid_argument(
+          "filterDynamicFeatures: the ego-motion distance needs current_from_earlier and depth "
+          "(CV_32FC1, m, of the image's size) of every earlier frame");
+    }
+    if (!(input.camera.fx > 0.0 && input.camera.fy > 0.0)) {
+      throw std::invalid_argument(
+          "filterDynamicFeatures: the ego-motion distance needs a camera with fx, fy > 0");
+    }
+  }
+}
 
 DynamicFeatureFilterResult judgeByDistance(const DynamicFeatureFilterInput& input,
                                            const FrameRegions& regions,
