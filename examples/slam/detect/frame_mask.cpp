@@ -1,55 +1,146 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/detect/frame_mask.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include <opencv2/imgproc.hpp>
-
-#include <hmcdyn/label_image.hpp>
 
 namespace hmcdyn::slam {
 namespace {
 
 constexpr int kLeastPixels = 64;
 
-/// Numbers the pieces of one label from `next` on and writes them into `numbered`.
-/// @return how many numbers were used.
-int numberPieces(const cv::Mat& of_label, int next, cv::Mat& numbered) {
-  const cv::Rect where = cv::boundingRect(of_label);
-  cv::Mat pieces;
-  cv::Mat statistics;
-  cv::Mat centres;
-  const int count =
-      cv::connectedComponentsWithStats(of_label(where), pieces, statistics, centres, 8, CV_32S);
-  int largest = 1;
-  for (int piece = 2; piece < count; ++piece) {
-    if (statistics.at<int>(piece, cv::CC_STAT_AREA) >
-        statistics.at<int>(largest, cv::CC_STAT_AREA)) {
-      largest = piece;
+/// What hangs together under one label.
+struct Piece {
+  int label = 0;   ///< Value in the label image.
+  int area = 0;    ///< Pixels.
+  int number = 0;  ///< Of its region, from 1.
+};
+
+/// The pieces of an image in the order of their first pixels, and which one each pixel is of.
+/// In one pass, however many labels there are.
+template <class Label>
+class Pieces {
+ public:
+  explicit Pieces(const cv::Mat& labels) : of_pixel_(labels.size(), CV_32SC1, cv::Scalar(-1)) {
+    for (int row = 0; row < labels.rows; ++row) {
+      joinRow(labels, row);
     }
-  }
-  std::vector<int> number(static_cast<std::size_t>(count), 0);
-  int used = 0;
-  for (int piece = 1; piece < count; ++piece) {
-    if (piece == largest || statistics.at<int>(piece, cv::CC_STAT_AREA) >= kLeastPixels) {
-      number[static_cast<std::size_t>(piece)] = next + used++;
-    }
-  }
-  for (int& own : number) {
-    own = own == 0 ? number[static_cast<std::size_t>(largest)] : own;
-  }
-  number[0] = 0;
-  for (int row = 0; row < pieces.rows; ++row) {
-    const int* piece = pieces.ptr<int>(row);
-    int* out = numbered.ptr<int>(where.y + row) + where.x;
-    for (int column = 0; column < pieces.cols; ++column) {
-      if (piece[column] != 0) {
-        out[column] = number[static_cast<std::size_t>(piece[column])];
+    std::vector<int> piece_of(sets_.size(), -1);  // of each set's root
+    for (int row = 0; row < labels.rows; ++row) {
+      int* const own = of_pixel_.ptr<int>(row);
+      for (int column = 0; column < labels.cols; ++column) {
+        if (own[column] >= 0) {
+          own[column] = addPixel(labels.ptr<Label>(row)[column], own[column], piece_of);
+        }
       }
     }
   }
-  return used;
+
+  std::vector<Piece> pieces;
+  const cv::Mat& ofPixel() const noexcept { return of_pixel_; }
+
+ private:
+  /// Gives each pixel the set of a neighbour before it that has its label, or a new one.
+  void joinRow(const cv::Mat& labels, int row) {
+    const Label* const label = labels.ptr<Label>(row);
+    int* const own = of_pixel_.ptr<int>(row);
+    for (int column = 0; column < labels.cols; ++column) {
+      if (label[column] == 0) {
+        continue;
+      }
+      int joined = column > 0 && label[column - 1] == label[column] ? own[column - 1] : -1;
+      for (int above = std::max(column - 1, 0);
+           row > 0 && above <= std::min(column + 1, labels.cols - 1); ++above) {
+        if (labels.ptr<Label>(row - 1)[above] == label[column]) {
+          const int other = of_pixel_.ptr<int>(row - 1)[above];
+          joined = joined < 0 ? other : unite(joined, other);
+        }
+      }
+      if (joined < 0) {
+        joined = static_cast<int>(sets_.size());
+        sets_.push_back(joined);
+      }
+      own[column] = joined;
+    }
+  }
+
+  int rootOf(int set) {
+    while (sets_[static_cast<std::size_t>(set)] != set) {
+      int& parent = sets_[static_cast<std::size_t>(set)];
+      parent = sets_[static_cast<std::size_t>(parent)];
+      set = parent;
+    }
+    return set;
+  }
+
+  int unite(int a, int b) {
+    a = rootOf(a);
+    b = rootOf(b);
+    sets_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    return std::min(a, b);
+  }
+
+  int addPixel(Label label, int set, std::vector<int>& piece_of) {
+    int& piece = piece_of[static_cast<std::size_t>(rootOf(set))];
+    if (piece < 0) {
+      piece = static_cast<int>(pieces.size());
+      pieces.push_back({static_cast<int>(label), 0, 0});
+    }
+    ++pieces[static_cast<std::size_t>(piece)].area;
+    return piece;
+  }
+
+  cv::Mat of_pixel_;       ///< CV_32SC1; -1 = background. Sets at first, pieces at last.
+  std::vector<int> sets_;  ///< Each one's parent; a root is its own.
+};
+
+/// Numbers the regions. @return how many there are.
+int numberPieces(std::vector<Piece>& pieces) {
+  std::vector<std::size_t> by_label(pieces.size());
+  std::iota(by_label.begin(), by_label.end(), std::size_t{0});
+  std::stable_sort(by_label.begin(), by_label.end(),
+                   [&](std::size_t a, std::size_t b) { return pieces[a].label < pieces[b].label; });
+  int regions = 0;
+  for (auto first = by_label.begin(); first != by_label.end();) {
+    const auto last = std::find_if(first, by_label.end(), [&](std::size_t piece) {
+      return pieces[piece].label != pieces[*first].label;
+    });
+    const std::size_t largest = *std::max_element(
+        first, last, [&](std::size_t a, std::size_t b) { return pieces[a].area < pieces[b].area; });
+    for (auto piece = first; piece != last; ++piece) {
+      if (*piece == largest || pieces[*piece].area >= kLeastPixels) {
+        pieces[*piece].number = ++regions;
+      }
+    }
+    for (; first != last; ++first) {
+      Piece& piece = pieces[*first];
+      piece.number = piece.number == 0 ? pieces[largest].number : piece.number;
+    }
+  }
+  return regions;
+}
+
+/// An image of the regions' numbers, CV_32SC1. @return how many there are.
+template <class Label>
+int numberRegions(const cv::Mat& labels, cv::Mat& numbered) {
+  Pieces<Label> found(labels);
+  const int regions = numberPieces(found.pieces);
+  numbered = cv::Mat::zeros(labels.size(), CV_32SC1);
+  for (int row = 0; row < labels.rows; ++row) {
+    const int* const piece = found.ofPixel().template ptr<int>(row);
+    int* const out = numbered.ptr<int>(row);
+    for (int column = 0; column < labels.cols; ++column) {
+      out[column] =
+          piece[column] < 0 ? 0 : found.pieces[static_cast<std::size_t>(piece[column])].number;
+    }
+  }
+  return regions;
 }
 
 /// Regions take up the background next to them; where two meet, the higher number does.
@@ -76,13 +167,10 @@ FrameMask makeFrameMask(const cv::Mat& labels, int margin, int class_id) {
                                 " px; expected 0 or more");
   }
   FrameMask mask;
-  mask.labels = cv::Mat::zeros(labels.size(), CV_32SC1);
-  for (const LabelRegion& label : regionsIn(labels)) {
-    const auto next = static_cast<int>(mask.regions.size()) + 1;
-    const int used = numberPieces(labels == label.label, next, mask.labels);
-    for (int i = 0; i < used; ++i) {
-      mask.regions.push_back({next + i, class_id, 1.0f});
-    }
+  const int regions = labels.type() == CV_8UC1 ? numberRegions<std::uint8_t>(labels, mask.labels)
+                                               : numberRegions<std::uint16_t>(labels, mask.labels);
+  for (int number = 1; number <= regions; ++number) {
+    mask.regions.push_back({number, class_id, 1.0f});
   }
   grow(mask.labels, margin);
   return mask;

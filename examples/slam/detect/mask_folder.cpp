@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -35,6 +38,32 @@ double stampOf(const std::filesystem::path& file) {
   return stamp;
 }
 
+/// Number of different values above 0.
+std::size_t labelsIn(const cv::Mat& mask) {
+  std::vector<std::uint8_t> is_there(std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1, 0);
+  for (int row = 0; row < mask.rows; ++row) {
+    const auto* const label = mask.ptr<std::uint16_t>(row);
+    for (int column = 0; column < mask.cols; ++column) {
+      is_there[label[column]] = 1;
+    }
+  }
+  return static_cast<std::size_t>(std::count(is_there.begin() + 1, is_there.end(), 1));
+}
+
+/// Depth images are 16 bit with one channel, too, but have hundreds of values.
+void refuseDepth(const cv::Mat& mask, const std::filesystem::path& file) {
+  constexpr std::size_t kMost = 100;  // things in an image, as COCO's evaluation has it
+  const std::size_t labels = mask.type() == CV_16UC1 ? labelsIn(mask) : 0;
+  if (labels > kMost) {
+    throw std::runtime_error(fmt::format(
+        "{}: has {} different labels on {:.0f} % of the image; expected 0 = background and a "
+        "number a thing that may move, {} at most; are these depth images? Give --masks the folder "
+        "of the masks",
+        file.string(), labels, 100.0 * cv::countNonZero(mask) / static_cast<double>(mask.total()),
+        kMost));
+  }
+}
+
 }  // namespace
 
 MaskFolder::MaskFolder(std::filesystem::path folder, cv::Size size, double time_tolerance)
@@ -61,7 +90,7 @@ MaskFolder::MaskFolder(std::filesystem::path folder, cv::Size size, double time_
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
     return a.timestamp < b.timestamp || (a.timestamp == b.timestamp && a.file < b.file);
   });
-  read(entries_.front().file);
+  refuseDepth(read(entries_.front().file), entries_.front().file);
 }
 
 cv::Mat MaskFolder::read(const std::filesystem::path& file) const {

@@ -18,7 +18,8 @@ class MaskFolder {
   /// @param size of the camera's images, which the first mask must have.
   /// @param time_tolerance largest difference between the stamps of an image and its mask (s).
   /// @throws std::runtime_error naming the folder where it cannot be read or has no PNG, or the
-  /// file whose name is no time stamp, or as at() for the first mask.
+  /// file whose name is no time stamp, or as at() for the first mask, or that one where it has so
+  /// many labels (more than 100, in 16 bit) that it must be a depth image.
   MaskFolder(std::filesystem::path folder, cv::Size size, double time_tolerance);
 
   /// Whether a mask's time stamp is near enough.

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "slam/detect/mask_folder.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "input/dataset/temporary_folder.hpp"
 #include "invalid_argument.hpp"
@@ -76,6 +80,19 @@ TEST_F(Masks, ANameThatIsNoTimeStampIsRefused) {
   }
 }
 
+TEST_F(Masks, DepthImagesAreRefused) {
+  cv::Mat image = cv::Mat::zeros(kSize, CV_16UC1);
+  for (int i = 0; i < 101; ++i) {
+    image.at<std::uint16_t>(i / 64, i % 64) = static_cast<std::uint16_t>(5000 + 20 * i);
+  }
+  put("10.0.png", image);
+  EXPECT_TRUE(mentions(refusal(), {"10.0.png", "101 different labels on 3 % of the image",
+                                   "100 at most", "are these depth images?"}));
+  image.at<std::uint16_t>(0, 0) = 0;
+  put("10.0.png", image);
+  EXPECT_NO_THROW(open()) << "100 things";
+}
+
 TEST_F(Masks, TheFirstOneIsCheckedAtTheStartAndTheOthersWhenTheyAreRead) {
   put("10.0.png", cv::Mat(48, 32, CV_8UC1, cv::Scalar(1)));
   EXPECT_TRUE(mentions(refusal(), {"10.0.png", "32 x 48", "expected a mask of 64 x 48"}));
@@ -115,6 +132,89 @@ TEST(FrameMasks, PiecesOfALabelAreRegionsAndCrumbsBelongToTheLargest) {
   EXPECT_EQ(at(71, 6), 4) << "the crumb, with the larger of the two";
   EXPECT_EQ(cv::countNonZero(mask.labels), 100 + 240 + 9 + 100 + 4);
   EXPECT_DOUBLE_EQ(coveredShare(mask), 453.0 / 6000.0);
+}
+
+/// A label's pieces one label at a time, by OpenCV's connected components, as they were found once:
+/// 1, 2, ... in the order of labels and of first pixels, crumbs with the first of the largest.
+cv::Mat numberedLabelByLabel(const cv::Mat& labels) {
+  std::map<int, std::vector<std::vector<cv::Point>>> by_label;
+  double largest_label = 0.0;
+  cv::minMaxLoc(labels, nullptr, &largest_label);
+  for (int label = 1; label <= static_cast<int>(largest_label); ++label) {
+    cv::Mat pieces;
+    cv::connectedComponents(labels == label, pieces, 8, CV_32S);
+    std::map<int, std::size_t> place;
+    auto& of_label = by_label[label];
+    for (int row = 0; row < labels.rows; ++row) {
+      for (int column = 0; column < labels.cols; ++column) {
+        if (const int piece = pieces.at<int>(row, column); piece != 0) {
+          const auto [at, is_new] = place.emplace(piece, of_label.size());
+          if (is_new) {
+            of_label.emplace_back();
+          }
+          of_label[at->second].emplace_back(column, row);
+        }
+      }
+    }
+  }
+  cv::Mat numbered = cv::Mat::zeros(labels.size(), CV_32SC1);
+  int next = 1;
+  for (const auto& [label, pieces] : by_label) {
+    const auto largest = std::max_element(pieces.begin(), pieces.end(),
+                                          [](auto& a, auto& b) { return a.size() < b.size(); });
+    int of_largest = 0;
+    for (auto piece = pieces.begin(); piece != pieces.end(); ++piece) {
+      const bool is_region = piece == largest || piece->size() >= 64;
+      of_largest = piece == largest ? next : of_largest;
+      for (const cv::Point& pixel : *piece) {
+        numbered.at<int>(pixel) = is_region ? next : -1;
+      }
+      next += is_region ? 1 : 0;
+    }
+    numbered.setTo(of_largest, numbered == -1);
+  }
+  return numbered;
+}
+
+TEST(FrameMasks, InOnePassTheRegionsAreThoseOfOneLabelAfterTheOther) {
+  cv::RNG random(1);
+  for (int round = 0; round < 40; ++round) {
+    cv::Mat labels = cv::Mat::zeros(60, 90, round % 2 == 0 ? CV_8UC1 : CV_16UC1);
+    for (int i = 0; i < 30; ++i) {
+      const cv::Point centre(random.uniform(0, 90), random.uniform(0, 60));
+      const cv::Size axes(random.uniform(1, 14), random.uniform(1, 14));
+      cv::ellipse(labels, centre, axes, random.uniform(0, 180), 0, 360,
+                  cv::Scalar(random.uniform(0, 6)), cv::FILLED);
+    }
+    if (round % 4 == 3) {  // crumbs and borders everywhere
+      for (int i = 0; i < 400; ++i) {
+        labels(cv::Rect(random.uniform(0, 90), random.uniform(0, 60), 1, 1))
+            .setTo(random.uniform(0, 6));
+      }
+    }
+    const FrameMask mask = makeFrameMask(labels);
+    const cv::Mat expected = numberedLabelByLabel(labels);
+    EXPECT_EQ(cv::countNonZero(mask.labels != expected), 0) << "round " << round;
+    double most = 0.0;
+    cv::minMaxLoc(expected, nullptr, &most);
+    EXPECT_EQ(mask.regions.size(), static_cast<std::size_t>(most));
+  }
+}
+
+// Label by label this took four seconds an image.
+TEST(FrameMasks, AsManyLabelsAsThereAreAreFoundAtOnce) {
+  cv::Mat labels(480, 640, CV_16UC1);
+  for (int row = 0; row < labels.rows; ++row) {
+    for (int column = 0; column < labels.cols; ++column) {
+      labels.at<std::uint16_t>(row, column) =
+          static_cast<std::uint16_t>((row * labels.cols + column) % 65536);
+    }
+  }
+  const std::int64_t begin = cv::getTickCount();
+  const FrameMask mask = makeFrameMask(labels, 4);
+  const double seconds = static_cast<double>(cv::getTickCount() - begin) / cv::getTickFrequency();
+  EXPECT_EQ(mask.regions.size(), 65535U);
+  EXPECT_LT(seconds, 2.0);  // 0.1 s; sanitizers and other programs take their time
 }
 
 TEST(FrameMasks, RegionsGrowByTheMarginAndNotIntoEachOther) {
