@@ -152,6 +152,10 @@ CLI::Validator zeroOrMore() {
   return numberThat([](double value) { return value >= 0.0; }, "0 or more", "NONNEGATIVE");
 }
 
+CLI::Validator zeroToOne() {
+  return numberThat([](double value) { return value >= 0.0 && value <= 1.0; }, "0..1", "0..1");
+}
+
 std::optional<std::string> nearest(const std::string& word,
                                    const std::vector<std::string>& candidates) {
   constexpr const char* kDashes = "-";

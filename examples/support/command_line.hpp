@@ -18,6 +18,7 @@ inline constexpr int kBadUsage = 2;
 /// largest double.
 CLI::Validator aboveZero();
 CLI::Validator zeroOrMore();
+CLI::Validator zeroToOne();
 
 /// The candidate that differs from `word` by the fewest letters inserted, left out, replaced or
 /// swapped with their neighbour, or that starts with it; the first at a tie. Nothing where more

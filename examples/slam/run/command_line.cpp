@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "slam/detect/coco_classes.hpp"
-#include "slam/detect/detector_factory.hpp"
 #include "slam/input/camera/calibration.hpp"
+#include "slam/run/detection_options.hpp"
 #include "support/command_line.hpp"
 #include "support/time_unit_option.hpp"
 
@@ -42,24 +41,6 @@ std::vector<std::string> filterNames() {
     names.emplace_back(toString(rule));
   }
   return names;
-}
-
-/// "person,chair", "0,56" or "all".
-std::vector<int> parseClasses(const std::string& list) {
-  std::vector<int> classes;
-  if (list == "all") {
-    return classes;
-  }
-  for (const std::string& name : CLI::detail::split(list, ',')) {
-    const std::optional<int> id = findCocoClass(name);
-    if (!id) {
-      throw CLI::ValidationError("--classes", "'" + name +
-                                                  "' is no COCO class; expected names such as "
-                                                  "person, numbers 0 to 79, or all");
-    }
-    classes.push_back(*id);
-  }
-  return classes;
 }
 
 void declareInput(CLI::App& app, SlamOptions& options) {
@@ -125,83 +106,6 @@ void declareInput(CLI::App& app, SlamOptions& options) {
   app.add_option("--max-frames", options.max_frames, "Stop after so many frames (0 = all)")
       ->capture_default_str()
       ->group("Input");
-}
-
-void declareCommand(CLI::App& app, CommandOptions& command) {
-  app.add_option("--command", command.line,
-                 "Program for --detector command, with its arguments: an image a frame comes on "
-                 "its standard input, boxes or a mask go back (docs/detectors.md)")
-      ->group("Detection");
-  app.add_option("--command-timeout", command.timeout,
-                 "Longest time (s) to its answer; then it is killed and started again")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group("Detection");
-  app.add_option("--command-start-timeout", command.start_timeout,
-                 "Longest time (s) to its first line, while it loads its model")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group("Detection");
-  app.add_option("--command-restarts", command.restarts,
-                 "So often it is started again after it died, hung or answered garbage")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str()
-      ->group("Detection");
-}
-
-void declareDetection(CLI::App& app, SlamOptions& options) {
-  DetectorOptions& detector = options.detector;
-  app.add_option("--detector", detector.type,
-                 "Where boxes come from: darknet, yolo (ONNX) and hog see people; file reads them "
-                 "(--boxes); masks reads label images in place of boxes (--masks); command asks a "
-                 "program of yours (--command); none needs no model: --filter robust goes by its "
-                 "motion mask alone")
-      ->check(CLI::Validator(describeFormerType, ""))
-      ->check(CLI::IsMember(detectorTypes()))
-      ->capture_default_str()
-      ->group("Detection");
-  app.add_option("--model", detector.model, "Model: .cfg for darknet, .onnx for yolo (v5 or v8)")
-      ->group("Detection");
-  app.add_option("--weights", detector.weights, "Weights of a darknet model")->group("Detection");
-  app.add_option("--boxes", detector.boxes,
-                 "Boxes for --detector file; a line: timestamp class x_min y_min x_max y_max score")
-      ->group("Detection");
-  app.add_option(
-         "--masks", detector.masks,
-         "Folder for --detector masks: a PNG a frame, named by the time stamp of its colour "
-         "image; 8 or 16 bit, 0 = background, every other value may move")
-      ->group("Detection");
-  app.add_option("--mask-margin", detector.mask_margin,
-                 "Regions are that much larger than their masks (px): what lies at a silhouette "
-                 "is on neither side")
-      ->check(support::zeroOrMore())
-      ->capture_default_str()
-      ->group("Detection");
-  declareCommand(app, detector.command);
-  app.add_option(
-         "--input-size", detector.input_size,
-         "Side of the network's input (px), a multiple of 32: an ONNX model's is fixed by its "
-         "export; 0 = 640 for yolo, as in the .cfg for darknet")
-      ->capture_default_str()
-      ->group("Detection");
-  app.add_option("--score-threshold", detector.score_threshold, "Lowest score of a box, 0..1")
-      ->capture_default_str()
-      ->group("Detection");
-  app.add_option("--nms-threshold", detector.nms_threshold,
-                 "Overlap (intersection over union) above which the weaker box goes, 0..1")
-      ->capture_default_str()
-      ->group("Detection");
-  app.add_option("--bridge", options.bridge,
-                 "A box that the detector missed is carried on by optical flow for so long (s); "
-                 "0 = never")
-      ->check(support::zeroOrMore())
-      ->capture_default_str()
-      ->group("Detection");
-  app.add_option_function<std::string>(
-         "--classes",
-         [&detector](const std::string& list) { detector.classes = parseClasses(list); },
-         "COCO classes to report, by name or number, or 'all' (default: person)")
-      ->group("Detection");
 }
 
 /// First of the options: what comes after it changes single values of what it sets.
