@@ -98,6 +98,52 @@ TEST_P(ClusteringProperties, AgreesWithTheTextbook) {
   EXPECT_GT(several, 300);
 }
 
+// Many points share a cell in which all are neighbours, which spares the search.
+TEST_P(ClusteringProperties, AgreesWithTheTextbookWherePointsAreDense) {
+  Random random(77);
+  int borders = 0;
+  int several = 0;
+  int worth_it = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    Input input;
+    const int dimensions = random.integer(1, 3);
+    const int n = random.integer(50, 250);
+    input.options.order = kOrders[random.integer(0, 3)];
+    input.options.min_points = random.integer(1, 40);
+    input.options.epsilon = 1.0f;
+    input.points.resize(dimensions, n);
+    const int clumps = random.integer(1, 6);
+    Eigen::MatrixXf centres(dimensions, clumps);
+    for (Eigen::Index c = 0; c < centres.size(); ++c) {
+      centres(c) = random.uniformFloat(-2.0, 2.0);
+    }
+    const float spread = random.uniformFloat(0.1, 0.6);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index k = 0; k < dimensions; ++k) {
+        const float value = centres(k, i % clumps) + spread * random.uniformFloat(-1.0, 1.0);
+        input.points(k, i) =
+            GetParam() == Coordinates::kEighths ? std::round(64.0f * value) / 64.0f : value;
+      }
+    }
+    const detail::MinkowskiBall ball(input.options.order, input.options.epsilon);
+    worth_it += detail::NeighbourCells(input.points, ball).areWorthIt() ? 1 : 0;
+    const Clustering actual = densityClusters(input.points, input.options);
+    const test::BruteForceClusters expected =
+        test::BruteForceDbscan(input.points, input.options.epsilon, input.options.min_points,
+                               input.options.order)
+            .result();
+    ASSERT_EQ(actual.label, expected.label) << "trial " << trial << ": " << input.describe();
+    for (std::size_t i = 0; i < expected.is_core.size(); ++i) {
+      ASSERT_EQ(actual.is_core[i] != 0, expected.is_core[i]) << "trial " << trial << " point " << i;
+      borders += !expected.is_core[i] && expected.label[i] >= 0 ? 1 : 0;
+    }
+    several += expected.clusters > 1 ? 1 : 0;
+  }
+  EXPECT_GT(borders, 500);
+  EXPECT_GT(several, 50);
+  EXPECT_GT(worth_it, 200);
+}
+
 TEST_P(ClusteringProperties, LabelsFollowThePointsInAnyOrder) {
   Random random(31);
   for (int trial = 0; trial < 200; ++trial) {

@@ -35,6 +35,25 @@ TEST(Bounds, EqualPointsInSpaceOrUnderAnotherDistanceAreOneClusterAtOnce) {
   }
 }
 
+TEST(Bounds, PointsWithinOneNeighbourhoodAreOneClusterAtOnce) {
+  constexpr int kPoints = 20000;
+  for (const float order : {1.0f, 2.0f, 3.0f}) {
+    for (const Eigen::Index dimensions : {1, 3}) {
+      Eigen::MatrixXf points(dimensions, kPoints);
+      for (int i = 0; i < kPoints; ++i) {
+        points.col(i).setConstant(1.5f + 1e-6f * static_cast<float>(i));  // 2 cm, epsilon 10 cm
+      }
+      points.col(7).setConstant(9.0f);
+      ClusteringOptions options;
+      options.order = order;
+      const Clustering clusters = densityClusters(points, options);
+      EXPECT_EQ(clusters.clusters, 1);
+      EXPECT_EQ(clusters.label[kPoints - 1], 0);
+      EXPECT_EQ(clusters.label[7], kNoise);
+    }
+  }
+}
+
 TEST(Bounds, AnImageWithALabelAPixelHasItsRegionsAtOnce) {
   constexpr int kWidth = 640;
   constexpr int kHeight = 480;

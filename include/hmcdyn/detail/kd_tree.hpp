@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -38,7 +39,7 @@ class KdTree {
   }
 
   /// Calls `visit(index)` for every column whose squared Euclidean distance from the query is below
-  /// the given one, in no particular order.
+  /// the given one, in no particular order; until it returns false, where it returns bool.
   template <class Visit>
   void visitWithin(const float* query, float squared_radius, Visit&& visit) const {
     Visitor<Visit> visitor{squared_radius, visit};
@@ -77,7 +78,11 @@ class KdTree {
     bool addPoint(float squared_distance, std::uint32_t index) {
       if (squared_distance < squared_radius) {
         ++found;
-        visit(index);
+        if constexpr (std::is_same_v<decltype(visit(index)), bool>) {
+          return visit(index);
+        } else {
+          visit(index);
+        }
       }
       return true;
     }

@@ -13,9 +13,71 @@
 #include <hmcdyn/detail/clustering_result.hpp>
 #include <hmcdyn/detail/kd_tree.hpp>
 #include <hmcdyn/detail/minkowski.hpp>
+#include <hmcdyn/detail/neighbour_cells.hpp>
 #include <hmcdyn/detail/union_find.hpp>
 
 namespace hmcdyn::detail {
+
+/// Different points whose neighbours are found by a kd-tree.
+class NeighbourSearch {
+ public:
+  /// @param points finite, D-by-N; outlives this, as the ball does.
+  NeighbourSearch(const Eigen::MatrixXf& points, const MinkowskiBall& ball)
+      : points_(points),
+        ball_(ball),
+        tree_(points),
+        search_(ball.enclosingSquaredRadius(points.rows())) {}
+
+  /// Calls `visit(j, power)` for the neighbours of point i, itself too, until it returns false.
+  template <class Visit>
+  void visitNeighbours(std::size_t i, Visit&& visit) const {
+    tree_.visitWithin(column(i), search_, [&](std::uint32_t j) {
+      const float power = ball_.power(column(i), column(j), points_.rows());
+      return !ball_.contains(power) || visit(j, power);
+    });
+  }
+
+ private:
+  const float* column(std::size_t i) const {
+    return points_.col(static_cast<Eigen::Index>(i)).data();
+  }
+
+  const Eigen::MatrixXf& points_;
+  const MinkowskiBall& ball_;
+  KdTree tree_;
+  float search_;
+};
+
+/// Marks the core points; those that are marked already are.
+inline void findCores(const NeighbourSearch& search, const std::vector<int>& times, int min_points,
+                      std::vector<std::uint8_t>& is_core) {
+  for (std::size_t i = 0; i < is_core.size(); ++i) {
+    std::int64_t neighbours = 0;
+    if (is_core[i] == 0) {
+      search.visitNeighbours(i, [&](std::uint32_t j, float) {
+        neighbours += times[j];
+        return neighbours < min_points;
+      });
+      is_core[i] = neighbours >= min_points ? 1 : 0;
+    }
+  }
+}
+
+/// The nearest core point among a point's neighbours, the smallest of equally near ones; -1 where
+/// there is none.
+inline std::int64_t nearestCore(const NeighbourSearch& search, std::size_t i,
+                                const std::vector<std::uint8_t>& is_core) {
+  float nearest = std::numeric_limits<float>::infinity();
+  std::int64_t core = -1;
+  search.visitNeighbours(i, [&](std::uint32_t j, float power) {
+    if (is_core[j] != 0 && (power < nearest || (power == nearest && j < core))) {
+      nearest = power;
+      core = j;
+    }
+    return true;
+  });
+  return core;
+}
 
 /// Clusters finite points whose columns are in lexicographic order: ties then fall to the smaller
 /// index, and clusters come out numbered by their smallest core point. No two columns are equal:
@@ -23,46 +85,33 @@ namespace hmcdyn::detail {
 inline Clustering clusterSorted(const Eigen::MatrixXf& points, const std::vector<int>& times,
                                 const MinkowskiBall& ball, int min_points) {
   const auto n = static_cast<std::size_t>(points.cols());
-  const Eigen::Index dimensions = points.rows();
-  const KdTree tree(points);
-  const float search = ball.enclosingSquaredRadius(dimensions);
-  const auto column = [&](std::size_t i) {
-    return points.col(static_cast<Eigen::Index>(i)).data();
-  };
-  const auto visitNeighbours = [&](std::size_t i, auto&& visit) {
-    tree.visitWithin(column(i), search, [&](std::uint32_t j) {
-      const float power = ball.power(column(i), column(j), dimensions);
-      if (ball.contains(power)) {
-        visit(j, power);
-      }
-    });
-  };
-
+  const NeighbourSearch search(points, ball);
+  NeighbourCells cells(points, ball);
   Clustering result;
   result.label.assign(n, kNoise);
   result.is_core.assign(n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    std::int64_t neighbours = 0;
-    visitNeighbours(i, [&](std::uint32_t j, float) { neighbours += times[j]; });
-    result.is_core[i] = neighbours >= min_points ? 1 : 0;
+  if (cells.areWorthIt()) {
+    cells.markFull(times, min_points, result.is_core);
   }
+  findCores(search, times, min_points, result.is_core);
 
   UnionFind sets;
   sets.reset(n);
+  if (cells.areWorthIt()) {
+    cells.unite(result.is_core, sets);
+  }
   std::vector<std::int64_t> nearest_core(n, -1);
   for (std::size_t i = 0; i < n; ++i) {
-    float nearest = std::numeric_limits<float>::infinity();
-    visitNeighbours(i, [&](std::uint32_t j, float power) {
-      if (result.is_core[j] == 0) {
-        return;
-      }
-      if (result.is_core[i] != 0) {
-        sets.unite(static_cast<std::uint32_t>(i), j);
-      } else if (power < nearest || (power == nearest && j < nearest_core[i])) {
-        nearest = power;
-        nearest_core[i] = j;
-      }
-    });
+    if (result.is_core[i] == 0) {
+      nearest_core[i] = nearestCore(search, i, result.is_core);
+    } else if (!cells.areWorthIt()) {
+      search.visitNeighbours(i, [&](std::uint32_t j, float) {
+        if (result.is_core[j] != 0) {
+          sets.unite(static_cast<std::uint32_t>(i), j);
+        }
+        return true;
+      });
+    }
   }
 
   for (std::size_t i = 0; i < n; ++i) {

@@ -48,6 +48,14 @@ class MinkowskiBall {
 
   bool contains(float power) const { return power <= power_; }
 
+  /// Side of a cube in which any two points are neighbours, without a margin for rounding.
+  double sideOfNeighbours(Eigen::Index dimensions) const {
+    return std::isinf(order_)
+               ? static_cast<double>(radius_)
+               : static_cast<double>(radius_) /
+                     std::pow(static_cast<double>(dimensions), 1.0 / static_cast<double>(order_));
+  }
+
   /// Squared radius of a Euclidean ball that holds this one, with a margin for rounding: a kd-tree
   /// with the Euclidean metric serves every order.
   float enclosingSquaredRadius(Eigen::Index dimensions) const {

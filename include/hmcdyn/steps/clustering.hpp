@@ -102,8 +102,10 @@ inline const Clustering& clusterPlanar(const ClusteringOptions& options,
 /// and every point with a coordinate that is not finite, is noise. Clusters are numbered by their
 /// lexicographically smallest core point. So labels do not depend on the order of the points.
 ///
-/// Takes O(N) time for evenly spread points in the plane with p = 2, else O(N log N); O(M^2) where
-/// the neighbourhoods hold most of the M different points: equal ones cost no more than sorting.
+/// Takes O(N) time for evenly spread points in the plane with p = 2, else O(N log N), also where
+/// neighbourhoods hold most of the points: those of a cell in which all are neighbours are taken
+/// together. Only in many dimensions, where few share a cell, that is O(M^2) for M different
+/// points.
 ///
 /// @param points D-by-N, a point a column.
 /// @param workspace keeps the memory and the result; valid until the next call with it. For points
