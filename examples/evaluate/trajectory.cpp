@@ -176,8 +176,8 @@ NotedTrajectory readTrajectoryFor(const std::filesystem::path& file, double firs
   }
   if (*seconds != 1.0) {
     truth.notes.push_back(
-        fmt::format("{}: a time stamp of 1 is read as {:g} s, since that fits the frames",
-                    file.string(), *seconds));
+        fmt::format("{}: the time stamps are read as {}, since that fits the frames", file.string(),
+                    support::nameOfUnit(*seconds)));
   }
   truth.poses = withStampsTimes(std::move(truth.poses), *seconds);
   return truth;

@@ -16,6 +16,8 @@
 
 #include <fmt/format.h>
 
+#include "support/file_kind.hpp"
+
 namespace hmcdyn::support {
 namespace {
 
@@ -192,6 +194,16 @@ bool isComment(std::string_view line) {
   return startsWith(line, "#") || startsWith(line, "%") || startsWith(line, "//");
 }
 
+/// Without a comment behind the row: a '#' with a blank before it. File names may have others.
+std::string_view withoutComment(std::string_view line) {
+  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
+    if (at > 0 && kBlanks.find(line[at - 1]) != std::string_view::npos) {
+      return line.substr(0, at);
+    }
+  }
+  return line;
+}
+
 /// "timestamp tx ty tz": names of columns.
 bool isHeader(const std::vector<std::string>& fields) {
   return fields.size() > 1 &&
@@ -233,6 +245,9 @@ std::string readBytes(const std::filesystem::path& file) {
 }
 
 std::string toText(const std::string& bytes, const std::string& file) {
+  if (const std::string kind = kindOfBytes(bytes); !kind.empty()) {
+    throw std::runtime_error(fmt::format("{}: expected text; this is {}", file, kind));
+  }
   std::string text;
   if (startsWith(bytes, "\xFF\xFE")) {
     text = fromUtf16(std::string_view(bytes).substr(2), false);
@@ -267,6 +282,7 @@ TextTable parseTable(std::string_view text, const std::string& file,
     if (line.empty() || isComment(line)) {
       continue;
     }
+    line = withoutComment(line);
     TextRow row;
     row.line = number;
     if (splitAtBlanks(line, fits, row.fields)) {
@@ -298,6 +314,9 @@ TextTable readTable(const std::filesystem::path& file,
 }
 
 std::string guessOfFields(const TextRow& row, std::size_t expected) {
+  if (std::string markup = guessOfMarkup(row.fields.front()); !markup.empty()) {
+    return markup;
+  }
   const bool points = std::any_of(row.fields.begin(), row.fields.end(), [](const std::string& f) {
     return f.find('.') != std::string::npos;
   });
@@ -312,6 +331,9 @@ std::string guessOfFields(const TextRow& row, std::size_t expected) {
 std::string guessOfPose(const TextRow& row) {
   constexpr std::size_t kFields = 8;
   const std::size_t count = row.fields.size();
+  if (std::string markup = guessOfMarkup(row.fields.front()); !markup.empty()) {
+    return markup;
+  }
   const bool is_matrix = count == 16 && std::equal(row.fields.begin() + 12, row.fields.begin() + 14,
                                                    row.fields.begin() + 13);
   double last = 0.0;

@@ -22,7 +22,8 @@ std::string readBytes(const std::filesystem::path& file);
 /// The UTF-8 text that bytes hold: in UTF-8 with or without its mark, or in UTF-16 of either order,
 /// as Windows' editors save it. Blanks of other widths become blanks, the typographic minus a
 /// minus, and line ends '\n'.
-/// @throws std::runtime_error "FILE: ..." where the bytes are no text.
+/// @throws std::runtime_error "FILE: ..." where the bytes are no text, with what they are if their
+/// first ones say so.
 std::string toText(const std::string& bytes, const std::string& file);
 
 /// A line of a table.
@@ -38,9 +39,10 @@ struct TextTable {
 };
 
 /// Splits text into the rows of a table. Left out are blank lines, those that start with '#', '%'
-/// or "//", and a line of column names above the first row. Fields are separated by blanks, tabs,
-/// commas or semicolons; where commas are the numbers' decimal points, they become points, which is
-/// noted: if blanks alone give a number of fields that fits.
+/// or "//", what stands behind a blank and '#' in a row, and a line of column names above the first
+/// row. Fields are separated by blanks, tabs, commas or semicolons; where commas are the numbers'
+/// decimal points, they become points, which is noted: if blanks alone give a number of fields that
+/// fits.
 /// @param fits which numbers of fields a row may have.
 TextTable parseTable(std::string_view text, const std::string& file,
                      const std::function<bool(std::size_t)>& fits);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "support/file_kind.hpp"
 #include "support/text_table.hpp"
 
 namespace hmcdyn::support {
@@ -123,7 +124,32 @@ std::vector<std::string> withZerosBehindThePoint(std::vector<std::string> fields
   return fields;
 }
 
-void noteTheUnusual(const std::vector<double>& steps, double seconds, StampReview& review) {
+/// What large stamps went through that are all multiples of a power of two or ten; empty for
+/// others.
+std::string howRounded(const std::vector<double>& different) {
+  const double largest = different.empty() ? 0.0 : std::abs(different.back());
+  if (!(largest >= 0x1p24)) {  // a float holds smaller numbers to the second
+    return {};
+  }
+  const auto areMultiplesOf = [&](double step) {
+    return std::all_of(different.begin(), different.end(),
+                       [step](double stamp) { return std::fmod(stamp, step) == 0.0; });
+  };
+  constexpr int kFloatDigits = 24;
+  const double of_float = std::ldexp(1.0, std::ilogb(largest) + 1 - kFloatDigits);
+  if (of_float >= 2.0 && areMultiplesOf(of_float)) {
+    return fmt::format("multiples of {:g}: were they rounded by a float of 32 bits?", of_float);
+  }
+  for (const double step : {1000.0, 100.0, 10.0}) {
+    if (areMultiplesOf(step)) {
+      return fmt::format("multiples of {:g}: were they rounded by few digits, as %e writes?", step);
+    }
+  }
+  return {};
+}
+
+void noteTheUnusual(const std::vector<double>& in_order, double seconds, StampReview& review) {
+  const std::vector<double> steps = stepsOf(in_order);
   const double step = median(steps) * seconds;
   constexpr double kFastest = 250.0;  // Hz
   if (1.0 / step > kFastest) {
@@ -140,8 +166,12 @@ void noteTheUnusual(const std::vector<double>& steps, double seconds, StampRevie
   constexpr double kGap = 10.0;  // s, and ten steps: a pause of the recording
   const double longest = *std::max_element(steps.begin(), steps.end()) * seconds;
   if (longest > std::max(kGap, 10.0 * step)) {
+    const bool is_unset = in_order.front() == 0.0 && steps.front() * seconds == longest;
     review.notes.push_back(
-        fmt::format("the recording has a gap of {:.1f} s between two frames", longest));
+        is_unset ? fmt::format("the first time stamp is 0, and the next {:.1f} s later: was the "
+                               "clock not set yet? Leave its line out",
+                               longest)
+                 : fmt::format("the recording has a gap of {:.1f} s between two frames", longest));
   }
 }
 
@@ -228,7 +258,7 @@ StampReview reviewStamps(const std::vector<double>& stamps) {
         "the time stamps are read as {} (--time-unit says otherwise)", toString(review.unit)));
   }
   if (!steps.empty()) {
-    noteTheUnusual(steps, secondsOf(review.unit, 1.0), review);
+    noteTheUnusual(sorted(stamps), secondsOf(review.unit, 1.0), review);
   }
   return review;
 }
@@ -246,6 +276,10 @@ std::string guessOfRepeated(const std::vector<double>& stamps) {
                        static_cast<double>(std::max<std::size_t>(different.size(), 1));
   if (times < 1.5) {
     return {};
+  }
+  if (const std::string rounded = howRounded(different); !rounded.empty()) {
+    return fmt::format("; {} lines have {} different stamps, all {}. Write them with six decimals",
+                       stamps.size(), different.size(), rounded);
   }
   if (areWhole(stamps)) {
     return fmt::format(
@@ -319,10 +353,21 @@ std::optional<double> secondsByOverlap(const std::vector<double>& stamps, double
   return best;
 }
 
+std::string differenceOf(double a, double b) { return fmt::format("{:.3f} s", std::abs(a - b)); }
+
+std::string nameOfUnit(double seconds) {
+  const auto known = std::find_if(kUnits.begin(), kUnits.end(),
+                                  [=](const Unit& unit) { return unit.seconds == seconds; });
+  return known == kUnits.end() ? fmt::format("units of {:.4g} s", seconds) : toString(known->unit);
+}
+
 std::string guessOfStamp(const std::string& field) {
   double ignored = 0.0;
   if (parseNumber(field, ignored)) {
     return {};
+  }
+  if (std::string markup = guessOfMarkup(field); !markup.empty()) {
+    return markup;
   }
   const auto has = [&field](const char* part) { return field.find(part) != std::string::npos; };
   const std::size_t digits = std::min(field.find_first_not_of("0123456789"), field.size());

@@ -65,6 +65,12 @@ BackwardReview reviewOrder(const std::vector<std::string>& fields);
 std::optional<double> secondsByOverlap(const std::vector<double>& stamps, double first, double last,
                                        double own_seconds, double slack);
 
+/// "3600.000 s", without digits that a difference of large numbers does not have; never negative.
+std::string differenceOf(double a, double b);
+
+/// "nanoseconds" of 1e-9, "units of 0.0333 s" of others: what stamps are read as.
+std::string nameOfUnit(double seconds);
+
 /// The unit of a time since 1970, nothing where a stamp is none in any unit.
 std::optional<TimeUnit> unitSince1970(double stamp);
 

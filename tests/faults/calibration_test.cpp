@@ -261,7 +261,7 @@ TEST_F(Calibration, WhatCannotBeReadIsNamedWithWhatToDo) {
        {"settings.yaml:4: Camera.fx", "%YAML:1.0 520.9", "two lines in one"}},
       {"a decimal comma",
        replaced(stock, "520.908620", "520,908620"),
-       {"settings.yaml:4: Camera.fx is '520,908620'"}},
+       {"settings.yaml:4: Camera.fx is '520,908620'", "decimal point"}},
       {"two values",
        stock + "Camera.fx: 535.4\n",
        {"Camera.fx is given twice", "line 4", "'535.4' in line"}},

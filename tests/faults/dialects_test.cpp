@@ -122,6 +122,39 @@ TEST_F(Dialects, OfFileNamesAreReadWhereThereIsNoFileOfTheNameAsItIsWritten) {
   EXPECT_EQ(slam::listFrames(folder_.path())[0].rgb, odd);
 }
 
+TEST_F(Dialects, OfFileNamesWithoutTheirFolderAreReadFromItAndSaid) {
+  const std::string color = folder_.write("rgb/1.png", "").string();
+  const std::string depth = folder_.write("depth/1.png", "").string();
+  folder_.write("associations.txt", "1.5 1.png 1.5 1.png\n");
+  const slam::FrameList list = slam::readFrameList(folder_.path());
+  EXPECT_EQ(list.frames[0].rgb, color);
+  EXPECT_EQ(list.frames[0].depth, depth);
+  EXPECT_TRUE(oneMentions(list.notes, {"1 files are listed without their folder", "rgb/"}));
+  EXPECT_TRUE(oneMentions(list.notes, {"1 files are listed without their folder", "depth/"}));
+  const std::string beside = folder_.write("1.png", "").string();  // as it is written
+  EXPECT_EQ(slam::listFrames(folder_.path())[0].rgb, beside);
+}
+
+TEST_F(Dialects, ACommentBehindARowIsCut) {
+  const evaluate::Trajectory poses =
+      evaluate::parseTrajectory("1.5 1 2 3 0 0 0 1  # key frame\n2.5 1 2 3 0 0 0 1\t#\n", "p")
+          .poses;
+  EXPECT_EQ(poses.size(), 2U);
+  folder_.write("a#1.png", "");
+  folder_.write("associations.txt", "1.5 a#1.png 1.5 a#1.png # good\n");
+  EXPECT_EQ(slam::listFrames(folder_.path())[0].rgb, folder_.path() / "a#1.png");
+}
+
+TEST_F(Dialects, MarkupInPlaceOfATableIsNamed) {
+  for (const auto& [text, name] :
+       {std::pair("{\n  \"counts\": {}\n}\n", "JSON"),
+        std::pair("[[1, 2, 3],\n[4, 5, 6]]\n", "JSON"), std::pair("<!DOCTYPE html>\n", "XML")}) {
+    EXPECT_TRUE(mentions(
+        messageOf<std::runtime_error>([&] { evaluate::parseTrajectory(text, "poses.txt"); }),
+        {"poses.txt:1:", "expected 8", name}));
+  }
+}
+
 TEST_F(Dialects, WhatIsAssumedIsNoted) {
   EXPECT_TRUE(oneMentions(evaluate::parseTrajectory("0,5 1,5 2 3 0 0 0 1\n", "poses.txt").notes,
                           {"poses.txt", "decimal commas"}));
@@ -243,6 +276,15 @@ TEST_F(Dialects, StampsThatRepeatAreSaid) {
 }
 
 TEST_F(Dialects, WhatIsNoTextIsNamed) {
+  using namespace std::string_literals;
+  for (const auto& [start, kind] :
+       {std::pair("\x1F\x8B\x08\x00"s, "gzip"), std::pair("\x89PNG\r\n"s, "PNG"),
+        std::pair("PK\x03\x04\x00"s, "PyTorch"), std::pair("\x80\x02}q"s, "pickle"),
+        std::pair("#ROSBAG V2.0\n"s, "bag of ROS")}) {
+    EXPECT_TRUE(mentions(
+        messageOf<std::runtime_error>([&, &bytes = start] { support::toText(bytes, "list.txt"); }),
+        {"list.txt: expected text", kind}));
+  }
   const std::string bytes("1 2\0\1\2\0", 6);
   EXPECT_TRUE(mentions(messageOf<std::runtime_error>([&] { support::toText(bytes, "list.txt"); }),
                        {"list.txt", "not a binary file"}));

@@ -98,6 +98,9 @@ TEST(Stamps, AnUnusualRateAndAGapAreSaid) {
   EXPECT_TRUE(oneMentions(support::reviewStamps(stamps).notes, {"1000 frames a second"}));
   stamps = {10.0, 10.1, 10.2, 3610.2, 3610.3};
   EXPECT_TRUE(oneMentions(support::reviewStamps(stamps).notes, {"gap of 3600.0 s"}));
+  stamps = {0.0, 1341846434.7, 1341846434.8, 1341846434.9};
+  EXPECT_TRUE(oneMentions(support::reviewStamps(stamps).notes,
+                          {"the first time stamp is 0", "1341846434.7 s later"}));
 }
 
 TEST_F(Time, WhatNobodyCanTellIsAskedFor) {
@@ -143,6 +146,14 @@ TEST_F(Time, WhatNobodyCanTellIsAskedFor) {
       {"rounded to seconds",
        [](double t, std::size_t) { return fmt::format("{:.0f}", t); },
        {"other files than in line 1", "rounded to seconds"}},
+      {"through a float of 32 bits",
+       [](double t, std::size_t) {
+         return fmt::format("{:.6f}", double{static_cast<float>(t + 1341845434.0)});
+       },
+       {"other files than in line 1", "multiples of 128", "float of 32 bits"}},
+      {"through %.6e",
+       [](double t, std::size_t) { return fmt::format("{:.6e}", t + 1341845434.0); },
+       {"other files than in line 1", "multiples of 1000", "%e"}},
   };
   for (const Kind& kind : kinds) {
     SCOPED_TRACE(kind.what);

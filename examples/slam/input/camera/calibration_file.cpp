@@ -313,6 +313,11 @@ CameraCalibration readForeign(const SettingsFile& settings) {
         break;
       }
     }
+    if (settings.has("intrinsic_matrix")) {
+      throw settings.failure(
+          "intrinsic_matrix",
+          "is not read: it is Open3D's, by columns; expected fx, fy, cx, cy and depth_factor");
+    }
     throw settings.failure(fmt::format(
         "has no focal length (fx, Camera.fx, Camera1.fx, a camera_matrix); its keys are {}, ...: "
         "is it the settings file of a camera?",

@@ -125,11 +125,25 @@ bool setsByEqualsSign(const std::string& line, const std::string& key) {
          line[after] == '=';
 }
 
+/// "CAMERA.FX" and "Camera.fx".
+bool differsInCase(const std::string& a, const std::string& b) {
+  return a != b &&
+         std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+           return std::tolower(x) == std::tolower(y);
+         });
+}
+
 /// To end a message about a value that is no number: what it may be.
 std::string guessOfValue(const Setting& setting) {
   const std::string& text = setting.text;
   if (text.find("%YAML") != std::string::npos || text.find(": ") != std::string::npos) {
     return "; are these two lines in one?";
+  }
+  const std::size_t comma = text.find(',');
+  double ignored = 0.0;
+  if (comma != std::string::npos &&
+      support::parseNumber(std::string(text).replace(comma, 1, "."), ignored)) {
+    return "; is the comma a decimal point? Write '.'";
   }
   // What files that are to be filled in hold in place of numbers.
   const bool is_template = text.find_first_of("<>{}$@?") != std::string::npos ||
@@ -263,6 +277,14 @@ const Setting& SettingsFile::required(const std::string& key) const {
       throw errorAt(file_, static_cast<std::size_t>(equals - lines_.begin()) + 1,
                     fmt::format("'{}' has an equals sign; expected \"{}: value\"",
                                 support::printable(trimmed(*equals)), key));
+    }
+    const auto other = std::find_if(settings_.begin(), settings_.end(), [&](const Setting& given) {
+      return differsInCase(given.key, key);
+    });
+    if (other != settings_.end()) {
+      throw errorAt(file_, other->line,
+                    fmt::format("'{}' is written in other letters; expected {}",
+                                support::printable(other->key), key));
     }
     throw below == settings_.end()
         ? failure(key, "is missing")

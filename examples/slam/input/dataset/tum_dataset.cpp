@@ -114,6 +114,37 @@ fs::path fileIn(const fs::path& folder, std::string name) {
   return folder / name;
 }
 
+// Files of one kind, which a list may name without the folder that they are in.
+class FilesOf {
+ public:
+  FilesOf(fs::path folder, const char* kind) : folder_(std::move(folder)), kind_(kind) {}
+
+  fs::path operator()(const std::string& name) {
+    fs::path file = fileIn(folder_, name);
+    const fs::path below = folder_ / kind_ / file.filename();
+    if (file.parent_path() == folder_ && !fs::exists(file) && fs::exists(below)) {
+      ++found_below_;
+      return below;
+    }
+    return file;
+  }
+
+  // Says how many were.
+  void note(std::vector<std::string>& notes) const {
+    if (found_below_ > 0) {
+      notes.push_back(
+          fmt::format("{} files are listed without their folder, and read from {}/ (\"{}/NAME\" is "
+                      "expected in the list)",
+                      found_below_, (folder_ / kind_).string(), kind_));
+    }
+  }
+
+ private:
+  fs::path folder_;
+  const char* kind_;
+  std::size_t found_below_ = 0;
+};
+
 // Lines "time file" of rgb.txt and depth.txt, or "time rgb_file time depth_file".
 List readList(const fs::path& file, std::size_t files_per_line, const DatasetOptions& options) {
   List list;
@@ -175,9 +206,10 @@ std::string guessOfClocks(const std::vector<double>& rgb, const std::vector<doub
   }
   return fmt::format(
       "; rgb.txt covers {} to {} s and depth.txt {} to {} s: two clocks (if both began together, "
-      "they differ by {:.6f} s)? Write both by one clock, or associations.txt",
+      "they differ by {}: {} is ahead)? Write both by one clock, or associations.txt",
       formatTimestamp(rgb.front()), formatTimestamp(rgb.back()), formatTimestamp(depth.front()),
-      formatTimestamp(depth.back()), rgb.front() - depth.front());
+      formatTimestamp(depth.back()), support::differenceOf(rgb.front(), depth.front()),
+      rgb.front() > depth.front() ? "colour" : "depth");
 }
 
 double medianStep(const std::vector<double>& times) {
@@ -235,28 +267,33 @@ FrameList pairByTime(const fs::path& folder, const DatasetOptions& options) {
   list.notes.insert(list.notes.end(), depth.notes.begin(), depth.notes.end());
   list.frames.reserve(pairs.size());
   std::vector<bool> paired(rgb.lines.size(), false);
+  FilesOf color_files(folder, "rgb");
+  FilesOf depth_files(folder, "depth");
   for (const auto& [i, j] : pairs) {
     paired[i] = true;
     list.frames.push_back({list.frames.size(), rgb.lines[i].timestamp,
-                           fileIn(folder, rgb.lines[i].files.front()),
-                           fileIn(folder, depth.lines[j].files.front())});
+                           color_files(rgb.lines[i].files.front()),
+                           depth_files(depth.lines[j].files.front())});
   }
+  color_files.note(list.notes);
+  depth_files.note(list.notes);
   list.color_without_depth = rgb.lines.size() - pairs.size();
   list.depth_without_color = depth.lines.size() - pairs.size();
   if (list.color_without_depth > 0) {
     const auto first = std::find(paired.begin(), paired.end(), false) - paired.begin();
     list.notes.push_back(fmt::format(
-        "{} of the {} colour images have no depth image within {} s and are left out, the first "
-        "is {}{}",
-        list.color_without_depth, rgb.lines.size(), options.time_tolerance,
+        "{} of the {} colour images {} no depth image within {} s and {} left out, the first is "
+        "{}{}",
+        list.color_without_depth, rgb.lines.size(), list.color_without_depth == 1 ? "has" : "have",
+        options.time_tolerance, list.color_without_depth == 1 ? "is" : "are",
         rgb.lines[static_cast<std::size_t>(first)].files.front(),
         noteOfRates(rgb_times, depth_times)));
   }
   if (list.depth_without_color > 0) {
-    list.notes.push_back(
-        fmt::format("{} of the {} depth images have no colour image within {} s{}",
-                    list.depth_without_color, depth.lines.size(), options.time_tolerance,
-                    list.color_without_depth > 0 ? "" : noteOfRates(rgb_times, depth_times)));
+    list.notes.push_back(fmt::format(
+        "{} of the {} depth images {} no colour image within {} s{}", list.depth_without_color,
+        depth.lines.size(), list.depth_without_color == 1 ? "has" : "have", options.time_tolerance,
+        list.color_without_depth > 0 ? "" : noteOfRates(rgb_times, depth_times)));
   }
   return list;
 }
@@ -267,10 +304,14 @@ FrameList readAssociations(const fs::path& folder, const fs::path& file,
   FrameList list;
   list.unit_seconds = lines.unit_seconds;
   list.notes = lines.notes;
+  FilesOf color_files(folder, "rgb");
+  FilesOf depth_files(folder, "depth");
   for (const ListLine& line : lines.lines) {
-    list.frames.push_back({list.frames.size(), line.timestamp, fileIn(folder, line.files.front()),
-                           fileIn(folder, line.files.back())});
+    list.frames.push_back({list.frames.size(), line.timestamp, color_files(line.files.front()),
+                           depth_files(line.files.back())});
   }
+  color_files.note(list.notes);
+  depth_files.note(list.notes);
   return list;
 }
 

@@ -243,5 +243,16 @@ TEST_F(CalibrationFile, WhatIsNoYamlIsNamed) {
   EXPECT_TRUE(mentions(readError("just words\n"), {"camera.yaml", "expected lines"}));
 }
 
+TEST_F(CalibrationFile, KeysInOtherLettersAreNamed) {
+  EXPECT_TRUE(
+      mentions(readError(with(kOldOrbSlam, "Camera.fx", "CAMERA.FX")),
+               {"camera.yaml:5: 'CAMERA.FX' is written in other letters", "expected Camera.fx"}));
+}
+
+TEST_F(CalibrationFile, Open3DsMatrixIsNamedWithWhatIsRead) {
+  EXPECT_TRUE(mentions(readError("{\"intrinsic_matrix\": [5, 0, 0, 0, 5, 0, 3, 2, 1]}"),
+                       {"intrinsic_matrix is not read", "Open3D", "fx, fy, cx, cy"}));
+}
+
 }  // namespace
 }  // namespace hmcdyn::slam
