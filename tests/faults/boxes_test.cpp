@@ -68,12 +68,21 @@ TEST_F(Boxes, AFileOfOtherBoxesIsRefusedWithAGuess) {
       {"corners in another order",
        "1000.0 person 600 470 300 200 0.9\n1000.1 person 610 460 310 210 0.9\n",
        {"x_max y_max x_min y_min"}},
+      {"x_min and x_max exchanged",
+       "1000.0 person 400 90 300 430 0.9\n1000.1 person 600 95 500 440 0.9\n",
+       {"x_max y_min x_min y_max"}},
+      {"y_min and y_max exchanged",
+       "1000.0 person 300 430 400 90 0.9\n1000.1 person 500 440 600 95 0.9\n",
+       {"x_min y_max x_max y_min"}},
+      {"corners in any order",
+       "1000.0 person 400 90 300 430 0.9\n1000.1 person 500 440 600 95 0.9\n",
+       {"in no one order", "the smaller x"}},
       {"shares", "1000.0 person 0.3 0.2 0.5 0.9 0.9\n", {"shares of the image", "640 and 480"}},
       {"YOLO's shares", "1000.0 0 0.6 0.5 0.2 0.4 0.9\n", {"shares", "centre and size"}},
       {"another image", "1000.0 person 1200 700 1500 900 0.9\n", {"another size than 640 x 480"}},
       {"another clock",
        "12.0 person 10 20 90 200 0.9\n",
-       {"no box is at a frame's time", "12.0", "differ by 988.000000 s"}},
+       {"no box is at a frame's time", "12.0", "differ by 988.000 s: the frames are ahead"}},
       {"without area",
        "1000.0 person 10 20 10 200 0.9\n",
        {"1 with a maximum not above", "no area"}},
@@ -242,6 +251,7 @@ TEST_F(Boxes, StampsInAnotherUnitAreThoseOfTheFramesTheyFit) {
     ASSERT_EQ(boxes.kept.size(), 1U) << stamp;
     EXPECT_NEAR(boxes.kept[0].timestamp, 1000.1, 1e-6);
     EXPECT_TRUE(oneMentions(boxes.notes, {"fits the frames"}));
+    EXPECT_TRUE(mentions(boxes.notes.front(), {"are read as", "seconds"}));
   }
 }
 
@@ -260,6 +270,18 @@ TEST_F(Boxes, ALineOfAnotherFormatIsNamedWithAGuess) {
            {"1,1,794,247,71,174,1,1,1.0\n", {"boxes.txt:1:", "MOT"}},
            {"2012-07-09T15:07:14 person 1 2 3 4 1\n", {"boxes.txt:1: timestamp is", "date"}},
            {"1000.0 person 10 20 90 200 95\n", {"boxes.txt:1: score is 95", "per cent"}},
+           {"1000.0 0 0.85 10 20 90 200\n",
+            {"boxes.txt:1: score is 200", "stand before the corners", "It comes last"}},
+           {"0,10.5,20.5,90.5,200.5,0.85,0,person\n",
+            {"boxes.txt:1: 8 fields", "timestamp class x_min", "score class name"}},
+           {"1000.0 traffic 10 20 90 200 0.9 1\n", {"boxes.txt:1: 8 fields"}},
+           {"Pedestrian 0.00 0 -0.20 10 20 90 200 1.8 0.5 1.2 1.8 1.4 8.4 0.01\n",
+            {"boxes.txt:1: 15 fields, the first 'Pedestrian'", "KITTI"}},
+           {"[\n{\"image_id\": 1, \"bbox\": [1, 2, 3, 4]}\n]\n",
+            {"boxes.txt:1: 1 fields", "timestamp class x_min", "JSON"}},
+           {"[{\"image_id\": 1, \"bbox\": [1, 2, 3, 4], \"score\": 0.5}]\n",
+            {"boxes.txt:1:", "JSON"}},
+           {"<?xml version=\"1.0\"?>\n", {"boxes.txt:1: 2 fields", "XML"}},
            {"rgb/1.png person 10 20 90 200 1\n",
             {"boxes.txt:1: timestamp is 'rgb/1.png'", "file's name"}}}) {
     const std::string message = refusal(kind.text);

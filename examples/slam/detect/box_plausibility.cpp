@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "slam/detect/box_notes.hpp"
+#include "slam/detect/box_order.hpp"
 #include "slam/detect/box_selection.hpp"
 #include "slam/detect/coco_classes.hpp"
 #include "support/time_stamps.hpp"
@@ -42,30 +43,6 @@ bool isBeyond(const DetectionBox& box, cv::Size image) {
                               box.y_max > kAtMost * static_cast<float>(image.height));
 }
 
-/// In which other order of four numbers all boxes fit the image; empty where in none.
-std::string guessOfOrder(const std::vector<TimedBox>& boxes, cv::Size image) {
-  if (allFit(boxes, image, [image](const DetectionBox& box) {
-        return fits(box.x_max, box.y_max, box.x_min, box.y_min, image);
-      })) {
-    return "they look like corners in the order x_max y_max x_min y_min; swap them";
-  }
-  if (allFitAsSize(boxes, image)) {
-    return "they look like x y width height; write x_min y_min x_min + width y_min + height";
-  }
-  if (allFit(boxes, image, [image](const DetectionBox& box) {
-        return fits(box.x_min, box.x_max, box.y_min, box.y_max, image);
-      })) {
-    return "they look like x_min x_max y_min y_max; swap the second and the third";
-  }
-  if (allFit(boxes, image, [image](const DetectionBox& box) {
-        return fits(box.x_min - box.x_max / 2, box.y_min - box.y_max / 2, box.x_min + box.x_max / 2,
-                    box.y_min + box.y_max / 2, image);
-      })) {
-    return "they look like centre and size; write centre - size / 2 and centre + size / 2";
-  }
-  return {};
-}
-
 std::string guessOfContent(const std::vector<TimedBox>& boxes, const BoxCounts& counts,
                            cv::Size image) {
   if (2 * counts.shares > counts.in_file) {
@@ -83,6 +60,9 @@ std::string guessOfContent(const std::vector<TimedBox>& boxes, const BoxCounts& 
   std::string order = guessOfOrder(boxes, image);
   if (!order.empty()) {
     return order;
+  }
+  if (counts.outside == 0 && counts.shares == 0) {  // another size does not turn a box inside out
+    return guessOfCorners(boxes, image);
   }
   return image.area() > 0 ? fmt::format("are they of images of another size than {} x {}?",
                                         image.width, image.height)
@@ -177,14 +157,15 @@ void useClockOf(const FramesOfBoxes& frames, const std::filesystem::path& file,
            fmt::format(
                "no box is at a frame's time: the boxes cover {:.6f} to {:.6f}, the frames "
                "{:.6f} to {:.6f} s; are these another recording's, or another clock's (if both "
-               "began together, they differ by {:.6f} s)?{}",
+               "began together, they differ by {}: {} are ahead)?{}",
                *first, *last, frames.times.front(), frames.times.back(),
-               frames.times.front() - *first, guessOfStamps(boxes)));
+               support::differenceOf(frames.times.front(), *first),
+               frames.times.front() > *first ? "the frames" : "the boxes", guessOfStamps(boxes)));
   }
   if (*seconds != 1.0) {
     review.notes.push_back(
-        fmt::format("{}: a time stamp of 1 is read as {:g} s, since that fits the frames",
-                    file.string(), *seconds));
+        fmt::format("{}: the time stamps are read as {}, since that fits the frames", file.string(),
+                    support::nameOfUnit(*seconds)));
   }
   for (TimedBox& timed : boxes) {
     timed.timestamp *= *seconds;

@@ -14,6 +14,7 @@
 #include "slam/detect/box_selection.hpp"
 #include "slam/detect/coco_classes.hpp"
 #include "slam/input/dataset/file_io.hpp"
+#include "support/file_kind.hpp"
 #include "support/text_table.hpp"
 #include "support/time_stamps.hpp"
 
@@ -23,17 +24,34 @@ namespace {
 constexpr std::size_t kNumbersBehindClass = 5;  // x_min y_min x_max y_max score
 constexpr std::size_t kLeastFields = 2 + kNumbersBehindClass;
 
+bool isNumber(const std::string& field) {
+  double ignored = 0.0;
+  return support::parseNumber(field, ignored);
+}
+
+/// Pedestrian 0.00 0 -0.20 x_min y_min x_max y_max height width length x y z turn, and a score.
+bool isKittiLabel(const support::TextRow& row) {
+  constexpr std::size_t kFields = 15;
+  return (row.fields.size() == kFields || row.fields.size() == kFields + 1) &&
+         !isNumber(row.fields.front()) &&
+         std::all_of(row.fields.begin() + 1, row.fields.end(), isNumber);
+}
+
 // What a row that is no box may be.
 std::string guessOfRow(const support::TextRow& row) {
-  const bool numbers = std::all_of(row.fields.begin(), row.fields.end(), [](const auto& field) {
-    double ignored = 0.0;
-    return support::parseNumber(field, ignored);
-  });
-  if (!numbers) {
-    double ignored = 0.0;
-    const auto isNumber = [&](const std::string& field) {
-      return support::parseNumber(field, ignored);
-    };
+  if (std::string markup = support::guessOfMarkup(row.fields.front()); !markup.empty()) {
+    return markup;
+  }
+  if (isKittiLabel(row)) {
+    return "; is this KITTI's file of one image? Write all images into one file, with time stamp, "
+           "class, corners and score";
+  }
+  if (!std::all_of(row.fields.begin(), row.fields.end(), isNumber)) {
+    if (row.fields.size() == kLeastFields + 1 && !isNumber(row.fields.back()) &&
+        std::all_of(row.fields.begin(), row.fields.end() - 1, isNumber)) {
+      return "; is this a detector's \"image x_min y_min x_max y_max score class name\"? Write the "
+             "time stamp of the image, and the class behind it";
+    }
     return row.fields.size() + 1 == kLeastFields && isNumber(row.fields.front())
                ? "; is the score missing? Write 1 behind each line"
                : "";
@@ -73,22 +91,44 @@ int parseClass(const support::TextRow& row, const std::filesystem::path& file) {
                             support::printable(text), kCocoClassCount - 1, guessOfRow(row)));
 }
 
+std::runtime_error wrongFields(const support::TextRow& row, const std::filesystem::path& file) {
+  // A file that holds JSON is rather shown by its first field than by their number.
+  return errorAt(
+      file, row.line,
+      fmt::format("{} fields, the first '{}'; expected \"timestamp class x_min y_min "
+                  "x_max y_max score\"{}",
+                  row.fields.size(), support::printable(row.fields.front()), guessOfRow(row)));
+}
+
+/// What the number in the place of a score may be, to end a message with.
+std::string guessOfScore(const DetectionBox& box) {
+  const bool is_share = box.x_min >= 0.0f && box.x_min <= 1.0f;
+  if (is_share && box.score > 1.0f && box.score > box.x_max) {
+    return fmt::format("; does the score, {:g}, stand before the corners? It comes last",
+                       box.x_min);
+  }
+  return box.score > 1.0f && box.score <= 100.0f
+             ? "; is it per cent, or a width in the place of the score?"
+             : "";
+}
+
 TimedBox parseRow(const support::TextRow& row, const std::filesystem::path& file) {
   if (row.fields.size() < kLeastFields) {
-    throw errorAt(file, row.line,
-                  fmt::format("{} fields; expected \"timestamp class x_min y_min x_max y_max "
-                              "score\"{}",
-                              row.fields.size(), guessOfRow(row)));
+    throw wrongFields(row, file);
   }
-  double ignored = 0.0;
-  if (row.fields.size() == kLeastFields && support::parseNumber(row.fields[1], ignored) &&
-      !support::parseNumber(row.fields.back(), ignored) && findCocoClass(row.fields.back())) {
+  if (row.fields.size() == kLeastFields && isNumber(row.fields[1]) &&
+      !isNumber(row.fields.back()) && findCocoClass(row.fields.back())) {
     throw errorAt(file, row.line,
                   fmt::format("the class, '{}', is behind the score; expected it behind the time "
                               "stamp",
                               support::printable(row.fields.back())));
   }
   const std::size_t first = row.fields.size() - kNumbersBehindClass;
+  // A class's name has no number among its words.
+  if (isKittiLabel(row) ||
+      (first > 2 && std::any_of(row.fields.begin() + 1, row.fields.begin() + first, isNumber))) {
+    throw wrongFields(row, file);
+  }
   const auto number = [&](std::size_t i, const char* what) {
     return static_cast<float>(parseFinite(row.fields[first + i], what, file, row.line));
   };
@@ -101,11 +141,9 @@ TimedBox parseRow(const support::TextRow& row, const std::filesystem::path& file
   timed.box.y_max = number(3, "y_max");
   timed.box.score = number(4, "score");
   if (timed.box.score < 0.0f || timed.box.score > 1.0f) {
-    throw errorAt(file, row.line,
-                  fmt::format("score is {}; expected 0..1{}", timed.box.score,
-                              timed.box.score > 1.0f && timed.box.score <= 100.0f
-                                  ? "; is it per cent, or a width in the place of the score?"
-                                  : ""));
+    throw errorAt(
+        file, row.line,
+        fmt::format("score is {}; expected 0..1{}", timed.box.score, guessOfScore(timed.box)));
   }
   return timed;
 }

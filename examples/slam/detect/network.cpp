@@ -8,8 +8,10 @@ namespace hmcdyn::slam {
 
 std::runtime_error modelError(const std::filesystem::path& model, const std::string& reason,
                               const std::string& advice) {
+  // OpenCV's sentences end in a full stop, and in line ends.
+  const std::string sentence = reason.substr(0, reason.find_last_not_of(". \r\n") + 1);
   return std::runtime_error(fmt::format("{}: OpenCV {} cannot run this model: {}; {}",
-                                        model.string(), CV_VERSION, reason, advice));
+                                        model.string(), CV_VERSION, sentence, advice));
 }
 
 std::runtime_error headError(const std::filesystem::path& model, const std::string& what) {

@@ -14,6 +14,7 @@
 #include "slam/detect/yolo_decode.hpp"
 #include "slam/detect/yolo_heads.hpp"
 #include "slam/input/dataset/file_io.hpp"
+#include "support/file_kind.hpp"
 
 namespace hmcdyn::slam {
 namespace {
@@ -22,14 +23,18 @@ constexpr int kDefaultInput = 640;  // of YOLOv5's and YOLOv8's exporters
 
 cv::dnn::Net loadNet(const std::filesystem::path& model) {
   const std::string bytes = readFile(model);
+  const char* const advice =
+      "export YOLOv5 as ONNX in float32 with opset 12, use a newer OpenCV, or take --detector "
+      "darknet";
+  if (const std::string kind = support::kindOfBytes(bytes); !kind.empty()) {
+    throw modelError(model, "it is no ONNX, but " + kind, advice);
+  }
   try {
     cv::dnn::Net net = cv::dnn::readNetFromONNX(bytes.data(), bytes.size());
     useCpu(net);
     return net;
   } catch (const cv::Exception& error) {
-    throw modelError(model, error.err,
-                     "export YOLOv5 as ONNX in float32 with opset 12, use a newer OpenCV, or take "
-                     "--detector darknet");
+    throw modelError(model, error.err, advice);
   }
 }
 
