@@ -30,6 +30,12 @@ void printSummary(const nlohmann::json& summary, const std::filesystem::path& ou
   if (counts.at("frames_dropped") > 0) {
     std::cout << " (" << counts.at("frames_dropped") << " dropped as late)";
   }
+  if (counts.at("stopped_by_signal")) {
+    std::cout << ", stopped by a signal at frame " << counts.at("frames_in");
+    if (counts.at("frames_expected") > 0) {
+      std::cout << " of " << counts.at("frames_expected");
+    }
+  }
   if (summary.contains("evaluation") && summary.at("evaluation").contains("ate_m")) {
     std::cout << ", ATE RMSE " << summary.at("evaluation").at("ate_m").at("rmse").get<double>()
               << " m over " << summary.at("evaluation").at("ate_m").at("pairs") << " poses";

@@ -209,6 +209,7 @@ void doFrames(Run& run, const std::function<bool()>& stop) {
                     fmt::format("{} tracked", run.counts.frames_tracked));
   }
   run.counts.source = run.source->counts();
+  run.counts.frames_expected = run.source->expectedFrames().value_or(0);
   run.counts.source.taken_up -= feed.framesAhead();
   run.counts.detections = run.detections.counts();
   if (!run.source->failure().empty()) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <exception>
 
 #include <Eigen/Core>
 #include <ceres/version.h>
@@ -12,19 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
 
-#include "evaluate/absolute_trajectory_error.hpp"
-#include "evaluate/relative_pose_error.hpp"
-#include "evaluate/trajectory.hpp"
+#include "slam/run/evaluation.hpp"
 #include "slam/run/input_check.hpp"
 
 namespace hmcdyn::slam {
 namespace {
-
-nlohmann::json toJson(const evaluate::Statistics& statistics) {
-  return {{"rmse", statistics.rmse},  {"mean", statistics.mean}, {"median", statistics.median},
-          {"std", statistics.std},    {"min", statistics.min},   {"max", statistics.max},
-          {"pairs", statistics.count}};
-}
 
 nlohmann::json toJson(const std::vector<PartError>& errors) {
   nlohmann::json json = nlohmann::json::array();
@@ -238,7 +229,9 @@ nlohmann::json summarizeRun(const SlamOptions& options, const RunNames& names,
     summary["warnings"].push_back(reason);
   }
   summary["errors"] = toJson(counts.errors);
-  if (!groundtruth.empty()) {
+  if (!groundtruth.empty() && counts.frames_tracked == 0) {
+    summary["evaluation"] = {{"error", "no frame has a pose"}};
+  } else if (!groundtruth.empty()) {
     summary["evaluation"] = evaluateTrajectory(groundtruth, options.output / "trajectory.txt");
     summary["evaluation_online"] =
         evaluateTrajectory(groundtruth, options.output / "trajectory_online.txt");
@@ -334,6 +327,7 @@ nlohmann::json toJson(const RunCounts& counts) {
             {"weaker", counts.box_file.weaker}}},
           {"dense_map_points", counts.map_points},
           {"stopped_by_signal", counts.stopped},
+          {"frames_expected", counts.frames_expected},
           {"write_failures", counts.write_failures}};
 }
 
@@ -357,32 +351,6 @@ nlohmann::json libraryVersions() {
       {"nanoflann", std::to_string((NANOFLANN_VERSION >> 8) & 0xF) + "." +
                         std::to_string((NANOFLANN_VERSION >> 4) & 0xF) + "." +
                         std::to_string(NANOFLANN_VERSION & 0xF)}};
-}
-
-nlohmann::json evaluateTrajectory(const std::filesystem::path& groundtruth,
-                                  const std::filesystem::path& estimate) {
-  nlohmann::json result;
-  evaluate::Trajectory truth;
-  evaluate::Trajectory tracked;
-  try {
-    tracked = evaluate::readTrajectory(estimate);
-    truth = evaluate::readTrajectoryFor(groundtruth, tracked.front().timestamp,
-                                        tracked.back().timestamp)
-                .poses;
-    result["ate_m"] = toJson(evaluate::absoluteTrajectoryError(truth, tracked).error);
-  } catch (const std::exception& error) {
-    result["error"] = error.what();
-    return result;
-  }
-  // A short clip has an ATE but no pair of poses 1 s apart.
-  try {
-    const evaluate::RpeResult rpe = evaluate::relativePoseError(truth, tracked);
-    result["rpe_translation_m_per_s"] = toJson(rpe.translation);
-    result["rpe_rotation_deg_per_s"] = toJson(rpe.rotation);
-  } catch (const std::exception& error) {
-    result["rpe_error"] = error.what();
-  }
-  return result;
 }
 
 }  // namespace hmcdyn::slam

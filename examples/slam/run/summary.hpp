@@ -45,6 +45,7 @@ struct RunCounts {
   std::size_t boxes_bridged = 0;                    ///< Boxes that the detector missed.
   std::size_t map_points = 0;                       ///< Of the dense map.
   bool stopped = false;                             ///< By a signal.
+  std::size_t frames_expected = 0;                  ///< To the end; 0 where a camera has none.
   std::vector<std::string> write_failures;          ///< File and reason; the first ended the run.
   std::vector<double> latency_ms;  ///< In real time: from a frame's due time to its pose.
   std::vector<PartError> errors;   ///< What parts of the system threw.
@@ -97,9 +98,5 @@ int exitCodeOf(const nlohmann::json& summary);
 
 /// Versions of this library and of what it was built with.
 nlohmann::json libraryVersions();
-
-/// ATE and RPE (1 s) of a trajectory, or an object with "error" where they cannot be computed.
-nlohmann::json evaluateTrajectory(const std::filesystem::path& groundtruth,
-                                  const std::filesystem::path& estimate);
 
 }  // namespace hmcdyn::slam

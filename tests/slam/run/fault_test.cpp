@@ -333,6 +333,7 @@ TEST_F(Fault, ARunThatIsStoppedCountsOnlyWhatItTookUp) {
   const nlohmann::json summary = runSlam(optionsFor(toy), [&asked] { return ++asked > 4; });
   EXPECT_EQ(summary.at("counts").at("stopped_by_signal"), true);
   EXPECT_EQ(summary.at("counts").at("frames_in"), 4);
+  EXPECT_EQ(summary.at("counts").at("frames_expected"), 10);
   EXPECT_EQ(summary.at("counts").at("frames_tracked"), 4);
   EXPECT_EQ(stampsOf().size(), 4U);
 }
