@@ -95,10 +95,10 @@ def options(*words: str) -> Run:
     return lambda lab: lab.slam(lab.copy(), *words)
 
 
-def masks(make: Callable[[], Any]) -> Run:
-    """S with the same label image for every frame."""
+def masks(make: Callable[[], Any], first: Optional[Callable[[], Any]] = None) -> Run:
+    """S with the same label image for every frame. @param first another one for the first."""
     def run(lab: Lab) -> Outcome:
-        for stamp, _ in lab.clip.rgb[:FRAMES + 2]:
-            save(lab.folder / "masks" / f"{stamp}.png", make())
+        for i, (stamp, _) in enumerate(lab.clip.rgb[:FRAMES + 2]):
+            save(lab.folder / "masks" / f"{stamp}.png", (first if first and i == 0 else make)())
         return lab.slam(lab.copy(), "--detector", "masks", "--masks", lab.folder / "masks")
     return run

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from fault_cases.case import Case, boxes, masks
-from fault_cases.outcome import ANY, Expect, within
+from fault_cases.outcome import ANY, Expect, refused, within
 from fault_cases.programs import user_program
 
 
@@ -93,7 +93,9 @@ def cost_cases() -> list[Case]:
              Expect(0, ("1 clusters",), checks=(within(5.0),))),
         Case("28", "a label image with 3e5 labels", user_program(MANY_LABELS, "-O2"),
              Expect(0, ("300000 regions",), checks=(within(10.0),))),
-        Case("own", "--masks with 65535 labels a frame", masks(many_labels), bounded),
+        Case("own", "--masks with 65535 labels a frame", masks(many_labels), refused("65535 different labels")),
+        Case("own", "the same from the second frame on",
+             masks(many_labels, lambda: np.zeros((480, 640), np.uint16)), bounded),
         Case("own", "--masks is the folder of depth images",
              lambda lab: lab.slam(lab.copy(), "--detector", "masks", "--masks", lab.clip.folder / "depth"),
              dataclasses.replace(bounded, said=("labels|regions|depth image",))),
