@@ -90,7 +90,7 @@ MaskFolder::MaskFolder(std::filesystem::path folder, cv::Size size, double time_
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
     return a.timestamp < b.timestamp || (a.timestamp == b.timestamp && a.file < b.file);
   });
-  refuseDepth(read(entries_.front().file), entries_.front().file);
+  read(entries_.front().file);
 }
 
 cv::Mat MaskFolder::read(const std::filesystem::path& file) const {
@@ -106,6 +106,7 @@ cv::Mat MaskFolder::read(const std::filesystem::path& file) const {
                     "camera's images",
                     file.string(), mask.cols, mask.rows, size_.width, size_.height));
   }
+  refuseDepth(mask, file);
   return mask;
 }
 

@@ -18,8 +18,7 @@ class MaskFolder {
   /// @param size of the camera's images, which the first mask must have.
   /// @param time_tolerance largest difference between the stamps of an image and its mask (s).
   /// @throws std::runtime_error naming the folder where it cannot be read or has no PNG, or the
-  /// file whose name is no time stamp, or as at() for the first mask, or that one where it has so
-  /// many labels (more than 100, in 16 bit) that it must be a depth image.
+  /// file whose name is no time stamp, or as at() for the first mask.
   MaskFolder(std::filesystem::path folder, cv::Size size, double time_tolerance);
 
   /// Whether a mask's time stamp is near enough.
@@ -27,7 +26,8 @@ class MaskFolder {
 
   /// The mask of the nearest time stamp, as it is in the file.
   /// @throws std::runtime_error naming the file: where none is near enough, or it is damaged, of
-  /// another size, or not 8 or 16 bit with one channel.
+  /// another size, not 8 or 16 bit with one channel, or has so many labels (more than 100 in 16
+  /// bit) that it must be a depth image: BoxCarrier compares every region with every other.
   cv::Mat at(double timestamp) const;
 
  private:

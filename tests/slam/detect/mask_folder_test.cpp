@@ -91,6 +91,10 @@ TEST_F(Masks, DepthImagesAreRefused) {
   image.at<std::uint16_t>(0, 0) = 0;
   put("10.0.png", image);
   EXPECT_NO_THROW(open()) << "100 things";
+  image.at<std::uint16_t>(0, 0) = 1;
+  put("11.0.png", image);
+  EXPECT_TRUE(mentions(messageOf<std::runtime_error>([&] { open().at(11.0); }),
+                       {"11.0.png", "101 different labels"}));
 }
 
 TEST_F(Masks, TheFirstOneIsCheckedAtTheStartAndTheOthersWhenTheyAreRead) {
