@@ -71,7 +71,7 @@ TEST_F(BoxFile, NoBoxIsFine) {
 
 TEST_F(BoxFile, AMalformedLineIsNamedWithItsNumber) {
   EXPECT_TRUE(mentions(readError("# boxes\n1.0 person 1 2 3 4\n"), {"boxes.txt:2:", "6 fields"}));
-  EXPECT_TRUE(mentions(readError("1.0 person 1 2 3 4 0.5 extra\n"), {"boxes.txt:1:", "class is"}));
+  EXPECT_TRUE(mentions(readError("1.0 person 1 2 3 4 0.5 extra\n"), {"boxes.txt:1:", "8 fields"}));
   EXPECT_TRUE(mentions(readError("now person 1 2 3 4 1\n"), {"boxes.txt:1: timestamp is 'now'"}));
   EXPECT_TRUE(mentions(readError("1.0 robot 1 2 3 4 1\n"), {"boxes.txt:1: class is 'robot'"}));
   EXPECT_TRUE(mentions(readError("1.0 80 1 2 3 4 1\n"), {"boxes.txt:1: class is '80'", "0..79"}));
