@@ -78,9 +78,10 @@ if(HMCDYN_WITH_VISION)
     src/flow/optical_flow.cpp src/flow/flow_selection.cpp
     src/two_view/eight_point.cpp src/two_view/fundamental.cpp src/two_view/camera_motion.cpp
     src/regions/label_image.cpp src/regions/frame_regions.cpp
-    src/mask/departure.cpp src/mask/depth_history.cpp src/mask/evidence.cpp
+    src/mask/coupling.cpp src/mask/departure.cpp src/mask/depth_history.cpp src/mask/evidence.cpp
     src/mask/motion_mask.cpp src/mask/named.cpp src/mask/options.cpp src/mask/small_frame.cpp
-    src/mask/smoothing.cpp src/mask/thing_motion.cpp src/mask/things.cpp src/mask/whole_mask.cpp
+    src/mask/smoothing.cpp src/mask/surface_tolerance.cpp src/mask/thing_motion.cpp
+    src/mask/things.cpp src/mask/whole_mask.cpp
     src/frame_filter/box_carrier.cpp src/frame_filter/comparison.cpp
     src/frame_filter/decision.cpp src/frame_filter/dynamic_feature_filter.cpp
     src/frame_filter/features.cpp src/frame_filter/filter_steps.cpp

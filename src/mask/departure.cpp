@@ -95,9 +95,9 @@ std::optional<std::size_t> pixelBeside(int pixel, float depth, const SmallFrame&
 }  // namespace
 
 void addDepartures(const SmallFrame& frame, const SmallCamera& camera, const SmallFrame& earlier,
-                   std::uint8_t bit, const MaskModel& model, EvidenceImage& image) {
+                   std::uint8_t bit, const SurfaceTolerance& tolerance, const MaskModel& model,
+                   EvidenceImage& image) {
   const RelativePose motion = relativePose(frame.camera_from_world, earlier.camera_from_world);
-  const SurfaceTolerance tolerance = surfaceTolerance(model);
   const float weight = model.evidence.departure_weight;
   for (int row = 0; row < earlier.height; ++row) {
     placeRow(row, earlier, camera, motion, model.options.max_depth, image.places);

@@ -9,6 +9,7 @@
 #include "mask/evidence.hpp"
 #include "mask/model.hpp"
 #include "mask/small_frame.hpp"
+#include "mask/surface_tolerance.hpp"
 
 namespace hmcdyn::internal {
 
@@ -17,6 +18,7 @@ namespace hmcdyn::internal {
 /// wide thing that moves across, the leading edge shows free space and the trailing edge this.
 /// @param bit of the earlier frame among the comparisons.
 void addDepartures(const SmallFrame& frame, const SmallCamera& camera, const SmallFrame& earlier,
-                   std::uint8_t bit, const MaskModel& model, EvidenceImage& image);
+                   std::uint8_t bit, const SurfaceTolerance& tolerance, const MaskModel& model,
+                   EvidenceImage& image);
 
 }  // namespace hmcdyn::internal

@@ -7,6 +7,7 @@
 
 #include "mask/departure.hpp"
 #include "mask/named.hpp"
+#include "mask/surface_tolerance.hpp"
 
 namespace hmcdyn::internal {
 namespace {
@@ -142,9 +143,24 @@ class Comparer {
       return;  // what it says is known once all are counted: addMismatches()
     }
     comparisons.same = static_cast<std::uint8_t>(comparisons.same | with.bit);
-    const float drift = !named_.empty() && named_[i] == kNamed ? o.named_drift : o.drift;
-    evidence.value += with.same_weight * std::max(-1.0f, cell.belief - drift);
-    evidence.weight += with.same_weight;
+    const bool is_named = !named_.empty() && named_[i] == kNamed;
+    const float weight =
+        with.same_weight * (named_.empty() ? weightByEdges(cell, tolerance) : 1.0f);
+    evidence.value += weight * std::max(-1.0f, cell.belief - (is_named ? o.named_drift : o.drift));
+    evidence.weight += weight;
+  }
+
+  /// A surface without an edge looks the same when it has moved along itself. Where boxes or masks
+  /// name what may move, it is of the room all the same.
+  float weightByEdges(const MaskCell& cell, float tolerance) const {
+    const float plain = model_.evidence.plain_weight;
+    const float depth_edge = (cell.farthest - cell.nearest) / tolerance;
+    const float gray_edge =
+        frame_.gray.empty()
+            ? 0.0f
+            : static_cast<float>(cell.brightest - cell.darkest) / model_.evidence.edge_gray;
+    const float edge = std::clamp(std::max(depth_edge, gray_edge), 0.0f, 1.0f);
+    return plain + (1.0f - plain) * edge;
   }
 
   bool differsInGray(std::size_t i, const MaskCell& cell) const {
@@ -193,13 +209,6 @@ void addMismatches(float weight, std::uint8_t bit, EvidenceImage& image) {
 
 }  // namespace
 
-SurfaceTolerance surfaceTolerance(const MaskModel& model) {
-  const float sigmas = model.depth.gate * std::sqrt(2.0f);  // both depths are noisy
-  const DepthErrorModel& error = model.options.depth_error;
-  return {model.depth.slack + sigmas * error.noise_floor, error.systematic_linear,
-          sigmas * error.noise_quadratic + error.systematic_quadratic};
-}
-
 EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& camera,
                                  const std::vector<const SmallFrame*>& earlier,
                                  const std::vector<std::uint8_t>& named, const MaskModel& model,
@@ -213,19 +222,22 @@ EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& cam
   const EvidenceModel& o = model.evidence;
   image.places = prepared(std::move(image.places), frame.width, camera);
   const Comparer comparer(frame, camera, named, model);
-  const SurfaceTolerance tolerance = surfaceTolerance(model);
+  SurfaceTolerance youngest;
   std::uint8_t bit = 1;
   for (const SmallFrame* other : earlier) {
     const double age = frame.timestamp - other->timestamp;
     const float grown = std::min(1.0f, static_cast<float>(age) / o.same_age);
-    const Tally tally =
-        comparer.run({other, relativePose(other->camera_from_world, frame.camera_from_world), bit,
-                      o.same_weight_young + (1.0f - o.same_weight_young) * grown, tolerance,
-                      areComparable(frame, *other, model.options.gray_tolerance)},
-                     image);
+    const RelativePose motion = relativePose(other->camera_from_world, frame.camera_from_world);
+    const SurfaceTolerance tolerance =
+        surfaceTolerance(model, measuredNoise(frame, *other, camera, motion, model, image.errors));
+    youngest = bit == 1 ? tolerance : youngest;
+    const Tally tally = comparer.run(
+        {other, motion, bit, o.same_weight_young + (1.0f - o.same_weight_young) * grown, tolerance,
+         areComparable(frame, *other, model.options.gray_tolerance)},
+        image);
     addMismatches(mismatchWeight(tally, !named.empty(), o), bit, image);
     if (o.departure_weight > 0.0f && age >= kYoungestDeparture && age <= kOldestDeparture) {
-      addDepartures(frame, camera, *other, bit, model, image);
+      addDepartures(frame, camera, *other, bit, youngest, model, image);
     }
     if (bit == 1 && tally.compared >= kFewestToDoubt) {
       image.agreement = static_cast<float>(tally.same) / static_cast<float>(tally.compared);

@@ -23,15 +23,6 @@ struct Comparisons {
   std::uint8_t mismatch = 0;  ///< There was a surface with another one.
 };
 
-/// Depths z of one surface in two frames differ by less (m): offset + linear z + quadratic z^2.
-struct SurfaceTolerance {
-  float offset = 0.0f;
-  float linear = 0.0f;
-  float quadratic = 0.0f;
-  float at(float z) const { return offset + (linear + quadratic * z) * z; }
-};
-SurfaceTolerance surfaceTolerance(const MaskModel& model);
-
 /// Where the surfaces of one row are in another frame: worked out for a row at once, so that the
 /// compiler takes several pixels at a time.
 struct RowPlaces {
@@ -43,10 +34,11 @@ struct RowPlaces {
 struct EvidenceImage {
   std::vector<Evidence> evidence;
   std::vector<Comparisons> comparisons;
-  float agreement = 1.0f;  ///< Surfaces that were there in the youngest earlier frame.
-  std::uint8_t fresh = 0;  ///< Bits of frames at most fresh_age old.
-  std::uint8_t proof = 0;  ///< Bits of frames at least proof_age old.
-  RowPlaces places;        ///< Workspace.
+  float agreement = 1.0f;     ///< Surfaces that were there in the youngest earlier frame.
+  std::uint8_t fresh = 0;     ///< Bits of frames at most fresh_age old.
+  std::uint8_t proof = 0;     ///< Bits of frames at least proof_age old.
+  RowPlaces places;           ///< Workspace.
+  std::vector<float> errors;  ///< Workspace.
 };
 
 /// @param named a flag a pixel: a box or mask says that it may move; empty = none.

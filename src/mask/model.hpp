@@ -9,9 +9,8 @@ namespace hmcdyn::internal {
 
 /// When an earlier depth contradicts the present one.
 struct DepthModel {
-  float gate = 3.0f;  ///< So many standard deviations of the noise are noise.
-  /// Added to every threshold (m): poses and the pixel grid are not exact.
-  float slack = 0.015f;
+  float gate = 3.0f;    ///< So many standard deviations of the measured error are error.
+  float slack = 0.01f;  ///< Added to every threshold (m).
 };
 
 /// How evidence is weighed and remembered.
@@ -28,6 +27,10 @@ struct EvidenceModel {
   /// for one of age `same_age` (s). Short ages say little: a moving surface covers itself.
   float same_weight_young = 0.4f;
   float same_age = 0.7f;  ///< (s)
+  /// Of a surface that was there before, where neither its depth nor its gray level has an edge: it
+  /// would look the same if it had moved along itself. (Share of the weight of one with an edge.)
+  float plain_weight = 0.25f;
+  float edge_gray = 40.0f;  ///< An edge: gray levels of 3 x 3 pixels that differ by this.
   /// A surface that stays drifts from what it was believed to be towards static by this a
   /// comparison (belief is -1 .. 1) ...
   float drift = 0.25f;
@@ -40,6 +43,9 @@ struct EvidenceModel {
 struct SegmentModel {
   float reach = 8.0f;        ///< Of evidence along a surface (reduced pixels).
   float depth_step = 0.02f;  ///< Neighbours that differ by this share of their depth part.
+  /// A crease of this depth (m) and so many standard deviations of the noise parts.
+  float crease = 0.015f;
+  float crease_gate = 1.5f;
   float belief = 0.1f;  ///< Pixels believed to move by more than this can be part of a thing ...
   float seed_belief = 0.4f;  ///< ... that has at least one pixel believed by more than this.
   /// A thing moves when so many of its pixels were not there a tenth of a second ago ...

@@ -11,6 +11,7 @@
 #include <hmcdyn/motion_mask.hpp>
 
 #include "image_text.hpp"
+#include "mask/coupling.hpp"
 #include "mask/depth_history.hpp"
 #include "mask/evidence.hpp"
 #include "mask/model.hpp"
@@ -69,6 +70,7 @@ struct MotionMaskEstimator::State {
   int next_number = 1;
   // workspace
   EvidenceImage evidence;
+  Couplings couplings;
   SmoothingWorkspace smoothing;
   ThingsWorkspace things;
   ReduceWorkspace reducing;
@@ -174,7 +176,9 @@ void MotionMaskEstimator::State::judge(const MotionMaskFrame& frame, int reducti
                                        SmallFrame& small) {
   const SmallCamera reduced = smallCamera(camera, reduction);
   addPoints(frame, reduction, small, model.evidence.dynamic_point_weight, evidence.evidence);
-  spreadAlongSurfaces(small, model.segment, evidence.evidence, smoothing);
+  // boxes and masks part things from what they stand on, too
+  couplings = coupleNeighbours(small, model, named.empty(), std::move(couplings));
+  spreadAlongSurfaces(couplings, small.width, evidence.evidence, smoothing);
   believe(small);
   const ThingsInput input{small, reduced, evidence, named, earlier, model, reduction};
   mask.instances = findThings(input, next_number, things, std::move(mask.instances));

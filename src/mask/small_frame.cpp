@@ -9,17 +9,17 @@
 namespace hmcdyn::internal {
 namespace {
 
-constexpr float kFar = 1e6f;        // stands for "no depth" where the nearest is looked for
-constexpr float kLongest = 100.0f;  // (m): no depth camera measures that far
-constexpr int kFewestOfNine = 6;    // depths around a pixel that may speak of free space
+constexpr float kFar = 1e6f;          // stands for "no depth" where the nearest is looked for
+constexpr float kLongest = 100.0f;    // (m): no depth camera measures that far
+constexpr float kOneSurface = 0.03f;  // depths of one surface in a square (share of the depth)
+constexpr int kFewestOfNine = 6;      // depths around a pixel that may speak of free space
 
 bool isDepth(float z) { return z > 0.0f && z < kLongest; }
 
 /// Depth of the pixel in the middle of a square, or of one beside it: what is missing there.
-void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small) {
+void middleDepths(const cv::Mat& depth, int reduction, SmallFrame& small) {
   const int middle = reduction / 2;
   const int beside = std::max(middle - 1, 0);
-  std::size_t measured = 0;
   for (int y = 0; y < small.height; ++y) {
     const auto* row = depth.ptr<float>(y * reduction + middle);
     const auto* row_beside = depth.ptr<float>(y * reduction + beside);
@@ -35,8 +35,43 @@ void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small) {
         }
         z = isDepth(z) ? z : 0.0f;
       }
-      measured += z > 0.0f ? 1 : 0;
       to[x] = z;
+    }
+  }
+}
+
+/// Mean of the depths of each square that are of the middle's surface: less noise, and no depth
+/// between two surfaces. What is not finite compares false.
+void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small, ReduceWorkspace& w) {
+  middleDepths(depth, reduction, small);
+  const std::size_t columns =
+      static_cast<std::size_t>(small.width) * static_cast<std::size_t>(reduction);
+  w.middles.resize(columns);
+  w.depth_sums.resize(columns);
+  w.depth_counts.resize(columns);
+  std::size_t measured = 0;
+  for (int y = 0; y < small.height; ++y) {
+    float* to = small.depth.data() + small.index(y, 0);
+    for (std::size_t x = 0; x < columns; ++x) {
+      w.middles[x] = to[x / static_cast<std::size_t>(reduction)];
+    }
+    std::fill(w.depth_sums.begin(), w.depth_sums.end(), 0.0f);
+    std::fill(w.depth_counts.begin(), w.depth_counts.end(), 0.0f);
+    const float* middles = w.middles.data();
+    float* sums = w.depth_sums.data();
+    float* counts = w.depth_counts.data();
+    for (int row = y * reduction; row < (y + 1) * reduction; ++row) {
+      const auto* from = depth.ptr<float>(row);
+      for (std::size_t x = 0; x < columns; ++x) {
+        const bool alike = std::abs(from[x] - middles[x]) < kOneSurface * middles[x];
+        sums[x] += alike ? from[x] : 0.0f;
+        counts[x] += alike ? 1.0f : 0.0f;
+      }
+    }
+    for (int x = 0; x < small.width; ++x, sums += reduction, counts += reduction) {
+      const float count = std::accumulate(counts, counts + reduction, 0.0f);
+      to[x] = count > 0.0f ? std::accumulate(sums, sums + reduction, 0.0f) / count : to[x];
+      measured += to[x] > 0.0f ? 1 : 0;
     }
   }
   small.depth_share = static_cast<float>(measured) / static_cast<float>(small.size());
@@ -160,7 +195,7 @@ SmallFrame reduceFrame(const MotionMaskFrame& frame, int reduction, SmallFrame r
   small.depth.resize(static_cast<std::size_t>(small.width) *
                      static_cast<std::size_t>(small.height));
   small.cells.resize(small.depth.size());
-  reduceDepth(frame.depth, reduction, small);
+  reduceDepth(frame.depth, reduction, small, workspace);
   if (frame.gray.empty()) {
     small.gray.clear();
   } else {

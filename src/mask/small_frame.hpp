@@ -54,12 +54,16 @@ struct SmallCamera {
 /// Pixels of the whole image a side of a reduced pixel.
 int reductionOf(int image_width, int working_width);
 
-/// A reduced pixel's depth is the one of the whole image's pixel in its middle.
+/// A reduced pixel stands for the whole image's pixel in its middle.
 SmallCamera smallCamera(const PinholeCamera& camera, int reduction);
 
 /// Buffers of reduceFrame().
 struct ReduceWorkspace {
-  std::vector<std::uint32_t> sums;  ///< Of gray levels, of each column of a row of squares.
+  // Of each column of a row of squares:
+  std::vector<float> middles;       ///< Depth in the middle of the square.
+  std::vector<float> depth_sums;    ///< Of depths like it.
+  std::vector<float> depth_counts;  ///< Of depths like it.
+  std::vector<std::uint32_t> sums;  ///< Of gray levels.
   // Of three reduced pixels above each other, a column at each border added:
   std::vector<float> nearest;
   std::vector<float> farthest;

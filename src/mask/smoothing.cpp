@@ -9,9 +9,8 @@
 namespace hmcdyn::internal {
 namespace {
 
-constexpr int kRounds = 2;             // one leaves stripes along rows and columns
-constexpr float kThroughHoles = 0.3f;  // share of the coupling that is left where depth is missing
-constexpr float kDoubt = 0.5f;         // weight that draws a belief of little evidence to 0
+constexpr int kRounds = 2;      // one leaves stripes along rows and columns
+constexpr float kDoubt = 0.5f;  // weight that draws a belief of little evidence to 0
 
 Evidence operator*(float factor, const Evidence& e) {
   return {factor * e.value, factor * e.weight};
@@ -21,35 +20,6 @@ Evidence operator+(const Evidence& a, const Evidence& b) {
 }
 Evidence operator-(const Evidence& a, const Evidence& b) {
   return {a.value - b.value, a.weight - b.weight};
-}
-
-/// Of pixels with those before them, a column or a row earlier.
-void coupleRow(const float* here, const float* before, int count, float most, float depth_step,
-               float* to) {
-  for (int x = 0; x < count; ++x) {
-    const float a = here[x];
-    const float b = before[x];
-    const float steps = (a - b) / (depth_step * std::min(a, b) + 0.002f);
-    const float squared = steps * steps;
-    const float on_surface = most / (1.0f + squared * squared);
-    to[x] = allOf(a > 0.0f, b > 0.0f) ? on_surface : most * kThroughHoles;
-  }
-}
-
-void couple(const SmallFrame& frame, const SegmentModel& model, SmoothingWorkspace& workspace) {
-  const float most = std::exp(-std::sqrt(2.0f) / model.reach);  // Gastal and Oliveira, eq. 21
-  workspace.left.assign(frame.size(), 0.0f);
-  workspace.above.assign(frame.size(), 0.0f);
-  for (int y = 0; y < frame.height; ++y) {
-    const std::size_t start = frame.index(y, 0);
-    const float* depth = frame.depth.data() + start;
-    coupleRow(depth + 1, depth, frame.width - 1, most, model.depth_step,
-              workspace.left.data() + start + 1);
-    if (y > 0) {
-      coupleRow(depth, depth - frame.width, frame.width, most, model.depth_step,
-                workspace.above.data() + start);
-    }
-  }
 }
 
 /// Several rows at once: each step waits for the one before, but not for those of other rows.
@@ -92,21 +62,20 @@ void alongColumns(const std::vector<float>& above, std::size_t width,
 
 }  // namespace
 
-void spreadAlongSurfaces(const SmallFrame& frame, const SegmentModel& model,
+void spreadAlongSurfaces(const Couplings& couplings, int image_width,
                          std::vector<Evidence>& evidence, SmoothingWorkspace& workspace) {
-  couple(frame, model, workspace);
-  const auto width = static_cast<std::size_t>(frame.width);
+  const auto width = static_cast<std::size_t>(image_width);
   constexpr std::size_t kTogether = 4;
   workspace.lines.resize(kTogether * width);
   for (int round = 0; round < kRounds; ++round) {
     std::size_t start = 0;
     for (; start + kTogether * width <= evidence.size(); start += kTogether * width) {
-      alongRows<kTogether>(&workspace.left[start], &evidence[start], width, workspace.lines);
+      alongRows<kTogether>(&couplings.left[start], &evidence[start], width, workspace.lines);
     }
     for (; start < evidence.size(); start += width) {
-      alongRows<1>(&workspace.left[start], &evidence[start], width, workspace.lines);
+      alongRows<1>(&couplings.left[start], &evidence[start], width, workspace.lines);
     }
-    alongColumns(workspace.above, width, evidence, workspace);
+    alongColumns(couplings.above, width, evidence, workspace);
   }
 }
 
