@@ -48,12 +48,13 @@ constexpr std::array<NumberOrder, 6> kOrders{{
 }  // namespace
 
 std::string guessOfOrder(const std::vector<TimedBox>& boxes, cv::Size image) {
-  const auto found = std::find_if(kOrders.begin(), kOrders.end(), [&](const NumberOrder& order) {
-    return allFit(boxes, image, [&](const DetectionBox& box) {
-      const DetectionBox as = order.corners(box);
-      return fits(as.x_min, as.y_min, as.x_max, as.y_max, image);
-    });
-  });
+  const auto* const found =
+      std::find_if(kOrders.begin(), kOrders.end(), [&](const NumberOrder& order) {
+        return allFit(boxes, image, [&](const DetectionBox& box) {
+          const DetectionBox as = order.corners(box);
+          return fits(as.x_min, as.y_min, as.x_max, as.y_max, image);
+        });
+      });
   return found == kOrders.end() ? std::string() : found->guess;
 }
 
