@@ -121,7 +121,7 @@ class FilesOf {
 
   fs::path operator()(const std::string& name) {
     fs::path file = fileIn(folder_, name);
-    const fs::path below = folder_ / kind_ / file.filename();
+    fs::path below = folder_ / kind_ / file.filename();
     if (file.parent_path() == folder_ && !fs::exists(file) && fs::exists(below)) {
       ++found_below_;
       return below;
