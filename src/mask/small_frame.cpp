@@ -52,8 +52,8 @@ void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small, ReduceW
   std::size_t measured = 0;
   for (int y = 0; y < small.height; ++y) {
     float* to = small.depth.data() + small.index(y, 0);
-    for (std::size_t x = 0; x < columns; ++x) {
-      w.middles[x] = to[x / static_cast<std::size_t>(reduction)];
+    for (int x = 0; x < small.width; ++x) {
+      std::fill_n(w.middles.begin() + std::ptrdiff_t{x} * reduction, reduction, to[x]);
     }
     std::fill(w.depth_sums.begin(), w.depth_sums.end(), 0.0f);
     std::fill(w.depth_counts.begin(), w.depth_counts.end(), 0.0f);
