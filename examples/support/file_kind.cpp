@@ -37,7 +37,7 @@ constexpr std::array<Magic, 15> kMagics{{
 }  // namespace
 
 std::string kindOfBytes(std::string_view bytes) {
-  const auto found = std::find_if(kMagics.begin(), kMagics.end(), [&](const Magic& magic) {
+  const auto* const found = std::find_if(kMagics.begin(), kMagics.end(), [&](const Magic& magic) {
     return bytes.substr(0, magic.bytes.size()) == magic.bytes;
   });
   return found == kMagics.end() ? std::string() : found->kind;

@@ -356,8 +356,8 @@ std::optional<double> secondsByOverlap(const std::vector<double>& stamps, double
 std::string differenceOf(double a, double b) { return fmt::format("{:.3f} s", std::abs(a - b)); }
 
 std::string nameOfUnit(double seconds) {
-  const auto known = std::find_if(kUnits.begin(), kUnits.end(),
-                                  [=](const Unit& unit) { return unit.seconds == seconds; });
+  const auto* const known = std::find_if(kUnits.begin(), kUnits.end(),
+                                         [=](const Unit& unit) { return unit.seconds == seconds; });
   return known == kUnits.end() ? fmt::format("units of {:.4g} s", seconds) : toString(known->unit);
 }
 
