@@ -146,12 +146,12 @@ TEST_F(Dialects, ACommentBehindARowIsCut) {
 }
 
 TEST_F(Dialects, MarkupInPlaceOfATableIsNamed) {
-  for (const auto& [text, name] :
+  for (const auto& markup :
        {std::pair("{\n  \"counts\": {}\n}\n", "JSON"),
         std::pair("[[1, 2, 3],\n[4, 5, 6]]\n", "JSON"), std::pair("<!DOCTYPE html>\n", "XML")}) {
-    EXPECT_TRUE(mentions(
-        messageOf<std::runtime_error>([&] { evaluate::parseTrajectory(text, "poses.txt"); }),
-        {"poses.txt:1:", "expected 8", name}));
+    EXPECT_TRUE(mentions(messageOf<std::runtime_error>(
+                             [&] { evaluate::parseTrajectory(markup.first, "poses.txt"); }),
+                         {"poses.txt:1:", "expected 8", markup.second}));
   }
 }
 
