@@ -9,12 +9,12 @@
 
 namespace hmcdyn::internal {
 
-/// Of each pixel, 0 .. 1; and buffers, a row each.
+/// Of each pixel, 0 .. 1.
 struct Couplings {
-  std::vector<float> left;   ///< With the one on its left.
-  std::vector<float> above;  ///< With the one above.
-  std::vector<float> inverse_depth;
-  std::vector<float> whole;
+  std::vector<float> left;           ///< With the one on its left.
+  std::vector<float> above;          ///< With the one above.
+  std::vector<float> inverse_depth;  ///< Workspace: of each pixel (1/m), 0 = none.
+  std::vector<float> whole;          ///< Workspace: of a row, what creases leave of a coupling.
 };
 
 /// Neighbours part at a depth edge, and along a concave crease: things are mostly convex, and where

@@ -222,6 +222,8 @@ EvidenceImage compareWithEarlier(const SmallFrame& frame, const SmallCamera& cam
   const EvidenceModel& o = model.evidence;
   image.places = prepared(std::move(image.places), frame.width, camera);
   const Comparer comparer(frame, camera, named, model);
+  // Departures go by it: in the older frames of a crowd so many surfaces are others that the noise
+  // measured there is too large to see who left.
   SurfaceTolerance youngest;
   std::uint8_t bit = 1;
   for (const SmallFrame* other : earlier) {

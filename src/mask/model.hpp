@@ -10,7 +10,7 @@ namespace hmcdyn::internal {
 /// When an earlier depth contradicts the present one.
 struct DepthModel {
   float gate = 3.0f;    ///< So many standard deviations of the measured error are error.
-  float slack = 0.01f;  ///< Added to every threshold (m).
+  float slack = 0.01f;  ///< Added to every threshold (m): errors beyond those measured.
 };
 
 /// How evidence is weighed and remembered.

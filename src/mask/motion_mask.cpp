@@ -176,7 +176,7 @@ void MotionMaskEstimator::State::judge(const MotionMaskFrame& frame, int reducti
                                        SmallFrame& small) {
   const SmallCamera reduced = smallCamera(camera, reduction);
   addPoints(frame, reduction, small, model.evidence.dynamic_point_weight, evidence.evidence);
-  // boxes and masks part things from what they stand on, too
+  // with boxes creases made the camera's path worse: docs/masks.md
   couplings = coupleNeighbours(small, model, named.empty(), std::move(couplings));
   spreadAlongSurfaces(couplings, small.width, evidence.evidence, smoothing);
   believe(small);

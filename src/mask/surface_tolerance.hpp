@@ -19,7 +19,7 @@ struct SurfaceTolerance {
 
 /// How much larger than its model the noise of two frames is: what the camera's driver smooths,
 /// what poses and the pixel grid add, and what the model does not know is in the depths of surfaces
-/// that were believed to be static. The median speaks, so that those that do move hardly count.
+/// that were believed to be static. A low quantile speaks, so that those that do move hardly count.
 /// @param motion takes points of the frame to the earlier one. @param errors room for them.
 /// @return a factor, bounded; 1 where too few surfaces can be compared.
 float measuredNoise(const SmallFrame& frame, const SmallFrame& earlier, const SmallCamera& camera,
