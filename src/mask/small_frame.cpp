@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include <opencv2/core/hal/intrin.hpp>
+
 namespace hmcdyn::internal {
 namespace {
 
@@ -40,6 +42,32 @@ void middleDepths(const cv::Mat& depth, int reduction, SmallFrame& small) {
   }
 }
 
+/// Sum and number of the depths in each column of a row of squares that are like the middle's. In
+/// lanes by hand, since compilers find "control flow" in it: it is a third of the frame's time
+/// else.
+void sumColumns(const cv::Mat& depth, int first_row, int end_row, ReduceWorkspace& w) {
+  using Lanes = cv::v_float32x4;
+  constexpr std::size_t kLanes = Lanes::nlanes;  // no more than columns: kSmallestSide
+  const Lanes one = cv::v_setall_f32(1.0f);
+  const Lanes share = cv::v_setall_f32(kOneSurface);
+  const std::size_t columns = w.middles.size();
+  for (std::size_t first = 0; first < columns; first += kLanes) {
+    const std::size_t start = std::min(first, columns - kLanes);  // the last overlap their left
+    const Lanes middle = cv::v_load(w.middles.data() + start);
+    const Lanes limit = share * middle;
+    Lanes sum = cv::v_setzero_f32();
+    Lanes count = cv::v_setzero_f32();
+    for (int row = first_row; row < end_row; ++row) {
+      const Lanes z = cv::v_load(depth.ptr<float>(row) + start);
+      const Lanes alike = cv::v_abs(z - middle) < limit;
+      sum += z & alike;
+      count += one & alike;
+    }
+    cv::v_store(w.depth_sums.data() + start, sum);
+    cv::v_store(w.depth_counts.data() + start, count);
+  }
+}
+
 /// Mean of the depths of each square that are of the middle's surface: less noise, and no depth
 /// between two surfaces. What is not finite compares false.
 void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small, ReduceWorkspace& w) {
@@ -55,19 +83,9 @@ void reduceDepth(const cv::Mat& depth, int reduction, SmallFrame& small, ReduceW
     for (int x = 0; x < small.width; ++x) {
       std::fill_n(w.middles.begin() + std::ptrdiff_t{x} * reduction, reduction, to[x]);
     }
-    std::fill(w.depth_sums.begin(), w.depth_sums.end(), 0.0f);
-    std::fill(w.depth_counts.begin(), w.depth_counts.end(), 0.0f);
-    const float* middles = w.middles.data();
-    float* sums = w.depth_sums.data();
-    float* counts = w.depth_counts.data();
-    for (int row = y * reduction; row < (y + 1) * reduction; ++row) {
-      const auto* from = depth.ptr<float>(row);
-      for (std::size_t x = 0; x < columns; ++x) {
-        const bool alike = std::abs(from[x] - middles[x]) < kOneSurface * middles[x];
-        sums[x] += alike ? from[x] : 0.0f;
-        counts[x] += alike ? 1.0f : 0.0f;
-      }
-    }
+    sumColumns(depth, y * reduction, (y + 1) * reduction, w);
+    const float* sums = w.depth_sums.data();
+    const float* counts = w.depth_counts.data();
     for (int x = 0; x < small.width; ++x, sums += reduction, counts += reduction) {
       const float count = std::accumulate(counts, counts + reduction, 0.0f);
       to[x] = count > 0.0f ? std::accumulate(sums, sums + reduction, 0.0f) / count : to[x];

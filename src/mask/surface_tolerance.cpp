@@ -9,7 +9,7 @@
 namespace hmcdyn::internal {
 namespace {
 
-constexpr std::uint32_t kErrorStep = 7;     // every so many pixels are asked
+constexpr std::uint32_t kErrorStep = 13;    // every so many pixels are asked
 constexpr std::size_t kFewestErrors = 100;  // that answer
 constexpr float kLargestError = 0.15f;      // (m): more is another surface
 constexpr float kEdgeOfSurface = 0.05f;     // 3 x 3 depths that differ by more (share) are none
