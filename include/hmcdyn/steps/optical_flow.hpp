@@ -20,7 +20,7 @@ struct OpticalFlowOptions {
   int max_level = 2;        ///< Coarsest pyramid level, 0 = the image itself.
   int guess_max_level = 1;  ///< The same where a guess is given; at most max_level counts.
   int max_iterations = 10;  ///< A level.
-  float epsilon = 0.01f;    ///< A level's iterations end below this step (px).
+  float epsilon = 0.03f;    ///< A level's iterations end below this step (px).
   /// A match whose window differs by more than this is dropped (mean absolute gray level).
   float max_difference = 12.0f;
   bool forward_backward = false;            ///< Also tracks forth again.
