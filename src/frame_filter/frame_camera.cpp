@@ -115,14 +115,21 @@ TwoViewEstimate modelOf(const CameraMotion& motion, const PointPairsView& pairs,
 void estimateCamera(const EarlierFrame& frame, const PointPairsView& pairs,
                     const std::vector<KnownMotion>& known, const DynamicFeatureFilterInput& input,
                     const DynamicFeatureFilterOptions& options, EarlierFrameReport& report) {
-  report.motion = estimateTwoViewModel(pairs, input.regions.boxes, known, options.two_view);
-  report.camera_known = isDetermined(report.motion);
-  if (!options.require_known_camera || !frame.current_from_earlier ||
-      !(input.camera.fx > 0.0 && input.camera.fy > 0.0)) {
-    return;
+  const bool is_predicted = options.require_known_camera && frame.current_from_earlier &&
+                            input.camera.fx > 0.0 && input.camera.fy > 0.0;
+  std::vector<std::uint8_t> speaks;
+  std::optional<CameraMotion> motion;
+  TwoViewModel predicted;
+  if (is_predicted) {
+    speaks = speakersFor(pairs, known, input, options);
+    motion = exactMotion(frame, pairs, speaks, input, options);
   }
-  const std::vector<std::uint8_t> speaks = speakersFor(pairs, known, input, options);
-  const std::optional<CameraMotion> motion = exactMotion(frame, pairs, speaks, input, options);
+  if (motion) {
+    predicted = modelOfMotion(input.camera, motion->current_from_earlier);
+  }
+  report.motion =
+      estimateTwoViewModel(pairs, input.regions.boxes, known, options.two_view, predicted);
+  report.camera_known = isDetermined(report.motion);
   if (!motion) {
     return;
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -229,6 +230,32 @@ double inlierShare(const TwoViewModel& model, const std::vector<Match>& matches,
   return static_cast<double>(inliers) / static_cast<double>(matches.size());
 }
 
+std::optional<internal::EightPointFit> refit(const std::vector<Match>& matches,
+                                             const Eigen::Matrix3d& start,
+                                             const TwoViewOptions& options) {
+  constexpr int kRounds = 3;
+  return start.isZero() || !start.allFinite()
+             ? std::nullopt
+             : internal::refitFundamental(matches, start, options.inlier_threshold, kRounds);
+}
+
+/// From the predicted matrix where so many matches agree with what comes of it that there is no
+/// other consensus to be found; from MAGSAC's elsewhere. (On real video MAGSAC finds more only
+/// where fewer than that agree with the prediction's.)
+std::optional<internal::EightPointFit> fitFundamental(const std::vector<Match>& matches,
+                                                      const TwoViewModel& predicted,
+                                                      const TwoViewOptions& options) {
+  if (predicted.kind == TwoViewModelKind::kFundamental) {
+    constexpr double kClearMajority = 0.7;
+    auto fit = refit(matches, predicted.matrix, options);
+    if (fit && inlierShare({TwoViewModelKind::kFundamental, fit->fundamental}, matches,
+                           options.inlier_threshold) > kClearMajority) {
+      return fit;
+    }
+  }
+  return refit(matches, estimateRobustly(matches, Estimator::kFundamental, options), options);
+}
+
 }  // namespace
 
 const char* toString(FundamentalVerdict verdict) noexcept {
@@ -262,6 +289,12 @@ TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const Det
 
 TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
                                      Span<const KnownMotion> known, const TwoViewOptions& options) {
+  return estimateTwoViewModel(pairs, boxes, known, options, TwoViewModel());
+}
+
+TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const DetectionBox> boxes,
+                                     Span<const KnownMotion> known, const TwoViewOptions& options,
+                                     const TwoViewModel& predicted) {
   checkOptions(options);
   checkPointPairs(pairs);
   if (!known.empty() && known.size() != pairs.size()) {
@@ -285,18 +318,12 @@ TwoViewEstimate estimateTwoViewModel(const PointPairsView& pairs, Span<const Det
   }
 
   estimate.verdict = FundamentalVerdict::kNoConsensus;
-  const Eigen::Matrix3d robust = estimateRobustly(matches, Estimator::kFundamental, options);
-  if (!robust.isZero()) {
-    constexpr int kRefitRounds = 3;
-    const auto refit =
-        internal::refitFundamental(matches, robust, options.inlier_threshold, kRefitRounds);
-    if (refit) {
-      estimate.model = {TwoViewModelKind::kFundamental, refit->fundamental};
-      estimate.conditioning = static_cast<float>(refit->conditioning);
-      estimate.verdict = refit->conditioning >= static_cast<double>(options.min_conditioning)
-                             ? FundamentalVerdict::kDefined
-                             : FundamentalVerdict::kIllConditioned;
-    }
+  if (const auto fit = fitFundamental(matches, predicted, options)) {
+    estimate.model = {TwoViewModelKind::kFundamental, fit->fundamental};
+    estimate.conditioning = static_cast<float>(fit->conditioning);
+    estimate.verdict = fit->conditioning >= static_cast<double>(options.min_conditioning)
+                           ? FundamentalVerdict::kDefined
+                           : FundamentalVerdict::kIllConditioned;
   }
   if (estimate.verdict != FundamentalVerdict::kDefined) {
     const Eigen::Matrix3d found = estimateRobustly(matches, Estimator::kHomography, options);
