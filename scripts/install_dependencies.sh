@@ -11,8 +11,8 @@ Installs the packages that hmcdyn needs to be built and tested (Debian, Ubuntu).
 all are installed. Needs root or sudo; without either it says what to install and fails.
 
   --check   only list what is missing; exit code 1 when something is
-  --ci      also what .ci/run needs: clang-format, clang-tidy, Doxygen, mold, Chromium for the report, OctoMap for
-            examples/octomap; --python
+  --ci      also what .ci/run needs: clang-format, clang-tidy and clang's headers, Doxygen, mold, Chromium for the
+            report, OctoMap for examples/octomap; --python
   --python  also what the Python module and its tests need: pybind11, numpy, pytest, OpenCV, matplotlib
   --bench   also the peers that the benchmarks measure against: Open3D and PCL
   --clang   also clang, its sanitizers and its fuzzer: preset asan-ubsan, scripts/fuzz.sh
@@ -34,7 +34,9 @@ only_check=false
 for argument in "$@"; do
   case "$argument" in
     --check) only_check=true ;;
-    --ci) packages+=(clang-format clang-tidy chromium doxygen liboctomap-dev mold "${python[@]}") ;;
+    --ci)
+      packages+=(clang-format clang-tidy libclang-dev llvm-dev chromium doxygen liboctomap-dev mold "${python[@]}")
+      ;;
     --python) packages+=("${python[@]}") ;;
     --clang) packages+=(clang libclang-rt-14-dev) ;;
     --bench) packages+=(libopen3d-dev libpcl-dev python3) ;;
