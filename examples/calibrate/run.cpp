@@ -63,7 +63,7 @@ void dropUnknown(std::vector<CalibrationImage>& images, ImagePoses& poses,
     Track known;
     for (const TrackPoint& point : track) {
       if (place[static_cast<std::size_t>(point.image)] >= 0) {
-        known.push_back({place[static_cast<std::size_t>(point.image)], point.pixel});
+        known.push_back({place[static_cast<std::size_t>(point.image)], point.pixel, point.size});
       }
     }
     track = std::move(known);
