@@ -50,22 +50,38 @@ std::vector<Equation> equationsOf(const std::vector<DepthSample>& samples, cv::S
   return equations;
 }
 
-/// Squares between nodes that hold enough points.
-int knownSquares(const std::vector<Equation>& equations, cv::Size image,
-                 const CorrectionFitOptions& options) {
+/// Which squares between nodes hold enough points, row by row.
+std::vector<std::uint8_t> knownSquares(const std::vector<Equation>& equations, cv::Size image,
+                                       const CorrectionFitOptions& options) {
   const auto part = [](double at, int size, int parts) {
     return std::clamp(static_cast<int>(at / size * parts), 0, parts - 1);
   };
-  std::map<std::pair<int, int>, std::set<int>> tracks;
+  const int across = options.columns - 1;
+  std::vector<std::set<int>> tracks(static_cast<std::size_t>((options.rows - 1) * across));
   for (const Equation& equation : equations) {
     const DepthSample& sample = *equation.sample;
-    tracks[{part(sample.v, image.height, options.rows - 1),
-            part(sample.u, image.width, options.columns - 1)}]
-        .insert(sample.track);
+    const int square = part(sample.v, image.height, options.rows - 1) * across +
+                       part(sample.u, image.width, across);
+    tracks[static_cast<std::size_t>(square)].insert(sample.track);
   }
-  return static_cast<int>(std::count_if(tracks.begin(), tracks.end(), [](const auto& square) {
-    return square.second.size() >= kPointsOfSquare;
-  }));
+  std::vector<std::uint8_t> known;
+  known.reserve(tracks.size());
+  for (const std::set<int>& of_square : tracks) {
+    known.push_back(of_square.size() >= kPointsOfSquare ? 1 : 0);
+  }
+  return known;
+}
+
+/// Nearest and farthest depth (m) of all but the outermost hundredths.
+std::array<double, 2> rangeOf(const std::vector<Equation>& equations) {
+  std::vector<double> depths;
+  depths.reserve(equations.size());
+  for (const Equation& equation : equations) {
+    depths.push_back(equation.sample->measured);
+  }
+  std::sort(depths.begin(), depths.end());
+  const std::size_t margin = depths.size() / 100;
+  return {depths[margin], depths[depths.size() - 1 - margin]};
 }
 
 /// Adds the priors: no scale error, no growth, and nodes that continue their neighbours.
@@ -230,15 +246,17 @@ CorrectionFit fitCorrection(const std::vector<DepthSample>& samples, cv::Size im
         "move sideways, and see texture with depth",
         equations.size(), kLeastSamples));
   }
-  const int known = knownSquares(equations, image, options);
-  const int squares = (options.rows - 1) * (options.columns - 1);
-  if (known < kLeastKnown * squares) {
+  CorrectionFit fit;
+  fit.known_squares = knownSquares(equations, image, options);
+  fit.known_range = rangeOf(equations);
+  const auto squares = fit.known_squares.size();
+  const auto known = std::count(fit.known_squares.begin(), fit.known_squares.end(), 1);
+  if (static_cast<double>(known) < kLeastKnown * static_cast<double>(squares)) {
     throw std::runtime_error(fmt::format(
         "depths of at least {} points could be compared in {} of {} parts of the image; expected "
         "half of them: move the camera so that texture with depth passes through all of it",
         kPointsOfSquare, known, squares));
   }
-  CorrectionFit fit;
   if (!options.scale_known) {
     std::vector<double> ratios;
     ratios.reserve(equations.size());

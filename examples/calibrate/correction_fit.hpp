@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -29,6 +31,10 @@ struct CorrectionFit {
   double smoothness = 0.0;       ///< The one taken (1/m).
   double held_out_before = 0.0;  ///< Median of |z - z_true| / z_true where no fit looked.
   double held_out_after = 0.0;   ///< The same, corrected.
+  /// Squares between nodes, row by row: 1 = enough points to know. In the others the correction
+  /// is the smooth continuation of its neighbours.
+  std::vector<std::uint8_t> known_squares;
+  std::array<double, 2> known_range{};  ///< Depths (m) that were compared; beyond, as above.
   /// By sample: depth (m) corrected by a fit that has not seen the sample's track.
   std::vector<double> held_out;
 };

@@ -20,6 +20,7 @@ constexpr float kSiftOffset = 0.25f;
 
 struct ImageFeatures {
   std::vector<cv::Point2f> pixels;
+  std::vector<float> sizes;
   cv::Mat descriptors;  // CV_32FC1, a row each
 };
 
@@ -62,6 +63,7 @@ ImageFeatures featuresOf(const cv::Mat& image, cv::SIFT& sift) {
   sift.compute(image, key_points, features.descriptors);
   for (const cv::KeyPoint& point : key_points) {
     features.pixels.push_back(point.pt - cv::Point2f(kSiftOffset, kSiftOffset));
+    features.sizes.push_back(point.size);
   }
   return features;
 }
@@ -195,8 +197,9 @@ std::vector<Track> featureTracks(const std::vector<cv::Mat>& images, const Track
   for (std::size_t i = 0; i < image_of.size(); ++i) {
     const int image = image_of[i];
     const auto within = i - static_cast<std::size_t>(first_of[static_cast<std::size_t>(image)]);
+    const ImageFeatures& of_image = features[static_cast<std::size_t>(image)];
     tracks[sets.find(static_cast<int>(i))].push_back(
-        {image, features[static_cast<std::size_t>(image)].pixels[within]});
+        {image, of_image.pixels[within], of_image.sizes[within]});
   }
   std::vector<Track> result;
   for (auto& track : tracks) {

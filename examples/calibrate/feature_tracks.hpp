@@ -11,6 +11,7 @@ namespace hmcdyn::calibrate {
 struct TrackPoint {
   int image = 0;      ///< Index of the image.
   cv::Point2f pixel;  ///< Pixel centres at whole numbers (px).
+  float size = 0.0f;  ///< Diameter of what the key point looks at (px).
 };
 
 /// A point of the scene, in increasing order of the images; at most once in each.

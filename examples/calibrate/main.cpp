@@ -50,12 +50,17 @@ void requireWritable(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> originOf(const Arguments& arguments, const Calibration& calibration) {
-  return {fmt::format("measured by hmcdyn_calibrate_depth on {} ({} depths in {} images)",
-                      arguments.options.dataset.string(), calibration.samples.size(),
-                      calibration.images),
-          arguments.options.scale_known
-              ? "scale by a trajectory that was not made with this camera's depth"
-              : "relative: no scale was known, so none is corrected"};
+  std::vector<std::string> lines{
+      fmt::format("measured by hmcdyn_calibrate_depth on {} ({} depths in {} images)",
+                  arguments.options.dataset.string(), calibration.samples.size(),
+                  calibration.images),
+      arguments.options.scale_known
+          ? "scale by a trajectory that was not made with this camera's depth"
+          : "relative: no scale was known, so none is corrected"};
+  if (calibration.corrects) {
+    lines.push_back("correction " + describeKnown(calibration.fit));
+  }
+  return lines;
 }
 
 void run(const Arguments& arguments) {

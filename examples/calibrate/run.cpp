@@ -63,7 +63,7 @@ void dropUnknown(std::vector<CalibrationImage>& images, ImagePoses& poses,
     Track known;
     for (const TrackPoint& point : track) {
       if (place[static_cast<std::size_t>(point.image)] >= 0) {
-        known.push_back({place[static_cast<std::size_t>(point.image)], point.pixel});
+        known.push_back({place[static_cast<std::size_t>(point.image)], point.pixel, point.size});
       }
     }
     track = std::move(known);
@@ -108,6 +108,20 @@ std::string describe(const ErrorStatistics& statistics, const DepthErrorModel& m
   }
   text += fmt::format("68 % of errors within {:.4f} z^2, at depth edges {:.4f} z^2 ({} points)\n",
                       statistics.elsewhere, statistics.at_edges, statistics.edges);
+  return text;
+}
+
+/// The parts of the image as a picture of signs, where one is not known.
+std::string describeSquares(const CorrectionFit& fit) {
+  if (std::count(fit.known_squares.begin(), fit.known_squares.end(), 0) == 0) {
+    return "\n";
+  }
+  std::string text = " (x known, . not):\n";
+  const auto across = static_cast<std::size_t>(fit.correction.columns - 1);
+  for (std::size_t i = 0; i < fit.known_squares.size(); ++i) {
+    text += fmt::format("{}{}", fit.known_squares[i] != 0 ? " x" : " .",
+                        i % across + 1 == across ? "\n" : "");
+  }
   return text;
 }
 
@@ -192,6 +206,13 @@ std::string cameraText(const std::string& camera) {
       preset->frame_rate);
 }
 
+std::string describeKnown(const CorrectionFit& fit) {
+  return fmt::format(
+      "known from {:.1f} to {:.1f} m in {} of {} parts of the image; a guess elsewhere",
+      fit.known_range[0], fit.known_range[1],
+      std::count(fit.known_squares.begin(), fit.known_squares.end(), 1), fit.known_squares.size());
+}
+
 std::string describe(const Calibration& c, const CalibrationOptions& options) {
   std::string text = fmt::format(
       "{} images, {} points triangulated (median {:.2f} px; camera positions within {:.1f} mm of "
@@ -205,6 +226,9 @@ std::string describe(const Calibration& c, const CalibrationOptions& options) {
       "\nmedian error {:.2f} % before and {:.2f} % after the correction where no fit looked: {}\n",
       100.0 * c.fit.held_out_before, 100.0 * c.fit.held_out_after,
       c.corrects ? "corrected" : "not worth a correction, or not wanted");
+  if (c.corrects) {
+    text += describeKnown(c.fit) + describeSquares(c.fit);
+  }
   text += fmt::format(
       "scale: {}\n",
       options.scale_known

@@ -52,6 +52,9 @@ slam::DepthSettings settingsOf(const Calibration& calibration);
 /// preset; without depth settings.
 std::string cameraText(const std::string& camera);
 
+/// Where the correction was measured, and that it is a guess elsewhere: a sentence.
+std::string describeKnown(const CorrectionFit& fit);
+
 /// The result as a table for people.
 std::string describe(const Calibration& calibration, const CalibrationOptions& options);
 

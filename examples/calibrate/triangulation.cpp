@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
 
+#include "calibrate/pixel_accuracy.hpp"
 #include "evaluate/alignment.hpp"
 #include "evaluate/statistics.hpp"
 #include "slam/map/bundle_adjustment.hpp"
@@ -17,6 +18,8 @@ namespace hmcdyn::calibrate {
 namespace {
 
 constexpr std::size_t kLeastPoints = 50;
+constexpr int kWeighings = 2;            // a third changes nothing that matters
+constexpr double kFarOut = 4.0;          // deviations: of normal errors one of 3000 observations is
 constexpr double kRotationSigma = 0.05;  // rad: pixels know better
 
 Eigen::Vector3d inCamera(const TrackPoint& seen, double depth, const PinholeCamera& camera) {
@@ -172,6 +175,50 @@ std::vector<Eigen::Vector3d> positionsOf(const std::vector<Eigen::Isometry3d>& c
   return positions;
 }
 
+/// Distance of an observation from its projection (px); nothing behind the camera.
+std::optional<double> distanceOf(const slam::BundleObservation& observation,
+                                 const slam::BundleSolution& solution,
+                                 const PinholeCamera& camera) {
+  const Eigen::Vector3d p = solution.poses[static_cast<std::size_t>(observation.pose)] *
+                            solution.points[static_cast<std::size_t>(observation.point)];
+  if (!(p.z() > 0.0)) {
+    return std::nullopt;
+  }
+  return std::hypot(camera.fx * p.x() / p.z() + camera.cx - static_cast<double>(observation.u),
+                    camera.fy * p.y() / p.z() + camera.cy - static_cast<double>(observation.v));
+}
+
+/// Starts the problem anew from its solution, each observation with the deviation that the
+/// solution's residuals give to key points of its size. What lies far out by that measure takes no
+/// part any more: wrong matches are many, and start far away, where a robust loss lets all of them
+/// pull alike.
+void weighBySize(Problem& problem, const slam::BundleSolution& solution,
+                 const TriangulationOptions& options) {
+  slam::BundleProblem& bundle = problem.bundle;
+  std::vector<std::size_t> index;
+  std::vector<PixelResidual> residuals;
+  for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
+    bundle.observations[i].weight = 0.0f;
+    if (const auto distance = distanceOf(bundle.observations[i], solution, bundle.camera)) {
+      index.push_back(i);
+      residuals.push_back({problem.seen[i].size, *distance});
+    }
+  }
+  const auto equations = static_cast<double>(2 * residuals.size());
+  const auto unknowns = static_cast<double>(3 * bundle.points.size() + 6 * bundle.poses.size());
+  const std::vector<double> deviations = pixelDeviations(
+      residuals, std::max(0.1, 1.0 - unknowns / equations), options.least_pixel_sigma);
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    slam::BundleObservation& observation = bundle.observations[index[i]];
+    observation.sigma = static_cast<float>(deviations[i]);
+    observation.weight = residuals[i].distance > kFarOut * deviations[i] ? 0.0f : 1.0f;
+  }
+  for (std::size_t i = 0; i < bundle.poses.size(); ++i) {
+    bundle.poses[i].camera_from_world = solution.poses[i];
+  }
+  bundle.points = solution.points;
+}
+
 /// A solution as the given positions' similarity moves it.
 Triangulation moved(const Problem& problem, const slam::BundleSolution& solution,
                     const evaluate::Alignment& similarity, std::size_t images,
@@ -200,7 +247,7 @@ Triangulation moved(const Problem& problem, const slam::BundleSolution& solution
     const Contribution contribution =
         contributionOf(tracks[point].point, problem.seen[i],
                        camera_from_world[static_cast<std::size_t>(observation.pose)],
-                       problem.bundle.camera, options.pixel_sigma);
+                       problem.bundle.camera, static_cast<double>(observation.sigma));
     information[point] += contribution.information;
     errors.push_back(contribution.pixel_error);
     tracks[point].seen.push_back(problem.seen[i]);
@@ -287,16 +334,20 @@ ImagePoses posesFromTracks(const std::vector<CalibrationImage>& images,
 Triangulation triangulate(const std::vector<CalibrationImage>& images,
                           const std::vector<Track>& tracks, const ImagePoses& poses,
                           const PinholeCamera& camera, const TriangulationOptions& options) {
-  const Problem problem = makeProblem(images, tracks, poses, camera, options);
+  Problem problem = makeProblem(images, tracks, poses, camera, options);
+  std::vector<Eigen::Vector3d> given;
+  for (const slam::BundlePose& pose : problem.bundle.poses) {
+    given.emplace_back(pose.camera_from_world.inverse().translation());
+  }
   slam::BundleOptions bundle_options;
   bundle_options.rounds = 3;
   bundle_options.max_iterations = 40;
   bundle_options.function_tolerance = 1e-7;
   bundle_options.max_dense_poses = 200;
-  const slam::BundleSolution solution = slam::adjustBundle(problem.bundle, bundle_options);
-  std::vector<Eigen::Vector3d> given;
-  for (const slam::BundlePose& pose : problem.bundle.poses) {
-    given.emplace_back(pose.camera_from_world.inverse().translation());
+  slam::BundleSolution solution = slam::adjustBundle(problem.bundle, bundle_options);
+  for (int pass = 0; pass < kWeighings; ++pass) {
+    weighBySize(problem, solution, options);
+    solution = slam::adjustBundle(problem.bundle, bundle_options);
   }
   const std::vector<Eigen::Vector3d> refined = positionsOf(solution.poses);
   const evaluate::Alignment similarity =

@@ -51,8 +51,9 @@ struct Triangulation {
 };
 
 struct TriangulationOptions {
-  double pixel_sigma = 0.7;  ///< Of a key point (px), > 0; SIFT on real images.
-  int least_images = 3;      ///< That see a point, >= 2.
+  double pixel_sigma = 0.7;  ///< Of a key point (px), > 0, to start with; SIFT on real images.
+  double least_pixel_sigma = 0.05;  ///< No key point is taken to be better (px), > 0.
+  int least_images = 3;             ///< That see a point, >= 2.
   /// What a given position is worth (m), > 0. Pixels alone let the scale drift along a path whose
   /// ends see nothing in common; RGB-D SLAM and motion capture are good to some millimetres.
   double position_sigma = 0.005;

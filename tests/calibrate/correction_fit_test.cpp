@@ -146,6 +146,20 @@ TEST(CorrectionFit, EdgesAreNotLookedAt) {
   EXPECT_LT(shareLeft(camera, fitCorrection(samples, kImage, options), false), 0.2);
 }
 
+TEST(CorrectionFit, SaysWhereNothingWasSeen) {
+  std::vector<DepthSample> samples = samplesOf({}, 1.0, 2.0);
+  for (DepthSample& sample : samples) {
+    sample.v *= 0.66;  // four of six rows of squares
+  }
+  const CorrectionFit fit = fitCorrection(samples, kImage);
+  ASSERT_EQ(fit.known_squares.size(), 48U);
+  for (std::size_t i = 0; i < 48; ++i) {
+    EXPECT_EQ(fit.known_squares[i], i < 32 ? 1 : 0) << i;
+  }
+  EXPECT_NEAR(fit.known_range[0], 1.0, 0.03);
+  EXPECT_NEAR(fit.known_range[1], 2.0, 0.03);
+}
+
 TEST(CorrectionFit, TooFewDepthsAreAnErrorThatSaysWhatIsMissing) {
   std::vector<DepthSample> samples = samplesOf({}, 1.0, 2.0);
   samples.resize(99);
