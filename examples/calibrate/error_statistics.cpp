@@ -107,7 +107,9 @@ ErrorStatistics errorStatistics(const std::vector<DepthSample>& samples,
     }
     const int row = std::clamp(static_cast<int>(3.0 * s.v / image.height), 0, 2);
     const int column = std::clamp(static_cast<int>(3.0 * s.u / image.width), 0, 2);
-    regions[static_cast<std::size_t>(3 * row + column)].push_back(error / truth);
+    if (!s.at_edge) {  // there it would say on which side of things the points lie
+      regions[static_cast<std::size_t>(3 * row + column)].push_back(error / truth);
+    }
     by_edge[s.at_edge ? 1 : 0].push_back(std::abs(error) / (truth * truth));
   }
   ErrorStatistics statistics;

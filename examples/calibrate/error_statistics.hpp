@@ -22,7 +22,8 @@ struct RangeStatistics {
   double systematic = 0.0;  ///< What does not: total^2 - noise^2 - triangulation^2, rooted (m).
 };
 
-/// The same by a third of the image in each direction, all ranges together, as shares of z_true.
+/// The same by a third of the image in each direction, all ranges together, as shares of z_true; of
+/// samples away from edges: at one, a sample may be of what is beside the point.
 struct RegionStatistics {
   int row = 0;            ///< 0..2
   int column = 0;         ///< 0..2
@@ -47,7 +48,7 @@ struct StatisticsOptions {
 /// Errors of depths, which may have been corrected. Noise is the spread (the 68th
 /// percentile over the square root of 2) of the difference of a track's errors in neighbouring
 /// images: what both share is gone from it. Ranges count all samples, as a tracker
-/// meets them; edges included.
+/// meets them, edges included; regions do not, so that they tell of the camera.
 /// @param depths of the samples (m), as many. @param truth_scale multiplies the samples' truth.
 ErrorStatistics errorStatistics(const std::vector<DepthSample>& samples,
                                 const std::vector<double>& depths, double truth_scale,

@@ -95,7 +95,7 @@ std::string describe(const ErrorStatistics& statistics, const DepthErrorModel& m
   text += fmt::format("model: noise {:.4f} + {:.5f} z^2, systematic {:.4f} z + {:.5f} z^2 (m)\n",
                       model.noise_floor, model.noise_quadratic, model.systematic_linear,
                       model.systematic_quadratic);
-  text += "bias by thirds of the image (%):\n";
+  text += "bias by thirds of the image, away from edges (%):\n";
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       const auto region = std::find_if(

@@ -94,8 +94,12 @@ TEST(ErrorStatistics, BiasOfEachThirdOfTheImageIsItsOwn) {
     s.truth = 2.0;
     samples.push_back(s);
     depths.push_back(s.u < 213.0 ? 2.02 : 2.0);
+    s.at_edge = true;  // what is behind, or before, is no error of the camera's field
+    samples.insert(samples.end(), 2, s);
+    depths.insert(depths.end(), 2, 2.6);
   }
   const ErrorStatistics statistics = errorStatistics(samples, depths, 1.0, {640, 480});
+  EXPECT_EQ(statistics.edges, 1800U);
   ASSERT_EQ(statistics.regions.size(), 9U);
   for (const RegionStatistics& region : statistics.regions) {
     EXPECT_NEAR(region.bias, region.column == 0 ? 0.01 : 0.0, 1e-9);
