@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A predicted fundamental matrix in place of random draws.
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <hmcdyn/steps/fundamental.hpp>

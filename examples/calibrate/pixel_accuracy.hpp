@@ -15,9 +15,8 @@ struct PixelResidual {
 /// key points are sorted by size and cut into eight parts of as many each, and a part has that of
 /// the normal distribution with its median distance. Large key points lie over several surfaces
 /// and are found five to ten times worse than small ones; the median does not mind wrong matches.
-/// @param redundancy 0..1, above 0: equations left over a given one, by which a solution's
-/// residuals
-///   are smaller than the errors.
+/// @param redundancy 0..1, above 0: share of the equations that is left over, by which a solution's
+/// residuals are smaller than the errors.
 /// @param least no deviation is below it (px).
 /// @return as many as residuals.
 std::vector<double> pixelDeviations(const std::vector<PixelResidual>& residuals, double redundancy,

@@ -93,13 +93,13 @@ float medianUpTo(float limit, const std::vector<float>& distance,
   return *middle;
 }
 
-TwoViewEstimate modelOf(const CameraMotion& motion, const PointPairsView& pairs,
-                        const std::vector<std::uint8_t>& speaks,
-                        const DynamicFeatureFilterInput& input,
-                        const DynamicFeatureFilterOptions& options) {
+/// What a motion is worth as an estimate. @param model of the motion.
+TwoViewEstimate estimateOf(const TwoViewModel& model, const CameraMotion& motion,
+                           const PointPairsView& pairs, const std::vector<std::uint8_t>& speaks,
+                           const DynamicFeatureFilterOptions& options) {
   TwoViewEstimate estimate;
   estimate.source = MatchSource::kPrediction;
-  estimate.model = modelOfMotion(input.camera, motion.current_from_earlier);
+  estimate.model = model;
   estimate.verdict = estimate.model.kind == TwoViewModelKind::kFundamental
                          ? FundamentalVerdict::kDefined
                          : FundamentalVerdict::kIllConditioned;
@@ -117,16 +117,12 @@ void estimateCamera(const EarlierFrame& frame, const PointPairsView& pairs,
                     const DynamicFeatureFilterOptions& options, EarlierFrameReport& report) {
   const bool is_predicted = options.require_known_camera && frame.current_from_earlier &&
                             input.camera.fx > 0.0 && input.camera.fy > 0.0;
-  std::vector<std::uint8_t> speaks;
-  std::optional<CameraMotion> motion;
-  TwoViewModel predicted;
-  if (is_predicted) {
-    speaks = speakersFor(pairs, known, input, options);
-    motion = exactMotion(frame, pairs, speaks, input, options);
-  }
-  if (motion) {
-    predicted = modelOfMotion(input.camera, motion->current_from_earlier);
-  }
+  const std::vector<std::uint8_t> speaks =
+      is_predicted ? speakersFor(pairs, known, input, options) : std::vector<std::uint8_t>();
+  const std::optional<CameraMotion> motion =
+      is_predicted ? exactMotion(frame, pairs, speaks, input, options) : std::nullopt;
+  const TwoViewModel predicted =
+      motion ? modelOfMotion(input.camera, motion->current_from_earlier) : TwoViewModel();
   report.motion =
       estimateTwoViewModel(pairs, input.regions.boxes, known, options.two_view, predicted);
   report.camera_known = isDetermined(report.motion);
@@ -138,7 +134,7 @@ void estimateCamera(const EarlierFrame& frame, const PointPairsView& pairs,
   // than F of those who are known to be at rest. (Where boxes cover half of the image, too, the
   // error of a real sequence rose from 8.4 to 11.5 mm, and no crowd was saved.)
   if (!report.camera_known) {
-    report.motion = modelOf(*motion, pairs, speaks, input, options);
+    report.motion = estimateOf(predicted, *motion, pairs, speaks, options);
     report.camera_known = true;
   }
 }

@@ -240,8 +240,8 @@ std::optional<internal::EightPointFit> refit(const std::vector<Match>& matches,
 }
 
 /// From the predicted matrix where so many matches agree with what comes of it that there is no
-/// other consensus to be found; from MAGSAC's elsewhere. (On real video MAGSAC finds more only
-/// where fewer than that agree with the prediction's.)
+/// other consensus to be found; from MAGSAC's elsewhere. (Looked at on one real clip alone: of 72
+/// such fits MAGSAC's had over 5 % more of the matches in 3, and over 5 % fewer in 6.)
 std::optional<internal::EightPointFit> fitFundamental(const std::vector<Match>& matches,
                                                       const TwoViewModel& predicted,
                                                       const TwoViewOptions& options) {

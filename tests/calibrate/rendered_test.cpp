@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the calibration finds in a rendered recording whose depth is wrong by a known amount. The
 // truth is the renderer's own depth image, not a model of the error.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -45,6 +46,7 @@ std::vector<std::filesystem::path> depthFiles(const std::filesystem::path& seque
   for (const auto& entry : std::filesystem::directory_iterator(sequence / "depth")) {
     files.push_back(entry.path());
   }
+  std::sort(files.begin(), files.end());  // folders have no order of their own
   return files;
 }
 
