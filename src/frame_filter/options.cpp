@@ -15,6 +15,9 @@ FrameFilterOptions FrameFilterOptions::paper() {
   options.max_followed = 0;
   DynamicFeatureFilterOptions& filter = options.expert;
   filter.use_belief = false;
+  // Flow and F as exact as before time was saved on them: without a mask all hangs on them.
+  filter.flow.epsilon = 0.01f;
+  filter.two_view.max_iterations = 2000;
   // F from all matches, and always F: no background first, no homography, no camera that stood.
   filter.two_view.min_background_matches = std::numeric_limits<int>::max();
   filter.two_view.still_displacement = 0.0f;

@@ -64,13 +64,16 @@ void judgeBox(Span<const std::uint32_t> members, const KeyPoints& points,
 /// Section III of the paper on a frame and the one before it.
 Expected stepByStep(const cv::Mat& before, const cv::Mat& now, const KeyPoints& points,
                     const std::vector<DetectionBox>& boxes) {
-  const FlowMatches flow =
-      trackIntoEarlierFrame(buildFlowPyramid(now), buildFlowPyramid(before), points.view());
+  OpticalFlowOptions exact_flow;
+  exact_flow.epsilon = 0.01f;
+  const FlowMatches flow = trackIntoEarlierFrame(buildFlowPyramid(now), buildFlowPyramid(before),
+                                                 points.view(), exact_flow);
   const PointPairsView pairs{flow.u, flow.v, points.u, points.v};
   TwoViewOptions always_f;  // of all matches, whatever the camera did
   always_f.min_background_matches = 1 << 30;
   always_f.still_displacement = 0.0f;
   always_f.min_conditioning = 1.0f;
+  always_f.max_iterations = 2000;
   const TwoViewEstimate motion = estimateTwoViewModel(pairs, {}, always_f);
   EXPECT_EQ(motion.model.kind, TwoViewModelKind::kFundamental);
   const std::vector<float> distance = epipolarDistances(motion.model.matrix, pairs);  // eq. 3-4
